@@ -272,6 +272,30 @@ fn nobody_is_lost_on_rough_ground() {
     Survey::of(&climbs.collect::<Vec<Climb>>()).expect_no_fault();
 }
 
+/// A corner under the side of a sole is left sideways, and the side of a block is no ground that falls away.
+#[test]
+fn edges_of_blocks_throw_no_swinging_foot() {
+    for (body, speed_mps, seed) in [
+        (1.0, 2.0, 0),
+        (1.0, 2.0, 15),
+        (1.25, 1.4, 3),
+        (1.25, 1.4, 5),
+        (1.0, 1.4, 11),
+    ] {
+        let way = Way::Blocks {
+            height: 0.15,
+            seed: seed + 1,
+        };
+        let climb = Climb {
+            body,
+            seed: seed.into(),
+            ..Climb::adult(way, 2.0, speed_mps)
+        };
+        let outcome = climb.walk();
+        assert!(outcome.jump < 0.07, "{climb:?}: {} m", outcome.jump);
+    }
+}
+
 /// All sizes, from a stroll to a hurry.
 #[test]
 fn hips_go_smoothly_over_rough_ground() {

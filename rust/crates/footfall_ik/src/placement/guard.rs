@@ -56,6 +56,7 @@ impl Foot {
             let rim = rocker.rim(foot);
             core::array::from_fn(|index| rim.as_flattened()[index])
         };
+        // Left and right by turns.
         let mut points = rim(target);
         let mut under = points.map(|point| scene.ground(point));
         self.push_out(scene, &points, &under, TOUCH_M);
@@ -68,16 +69,18 @@ impl Foot {
         let middle = points.iter().sum::<Vec3>() / RIM as f32;
         let mut short = 0.0_f32;
         let mut touched = 0.0_f32;
-        for ((point, under), free) in points.iter().zip(under).zip(rim(&animated.foot)) {
+        let rest = rim(&animated.foot);
+        for (index, (point, under)) in points.iter().zip(under).enumerate() {
             // No more room than the animation leaves over its own floor.
-            let room = free.y.clamp(0.0, GUARD_M);
+            let room = rest[index].y.clamp(0.0, GUARD_M);
             let Some((height, normal)) = under else {
                 continue;
             };
             let mut over = height - point.y - TOUCH_M;
             if over > 0.0 {
                 // A wall that it touches from the side is not above it.
-                over = over.min(scene.depth_beside(*point, middle, TOUCH_M) - SUNK_M);
+                over = over
+                    .min(scene.depth_beside(*point, [middle, points[index ^ 1]], TOUCH_M) - SUNK_M);
             }
             touched = touched.max(over);
             let before = if back == Vec3::ZERO {
@@ -91,7 +94,9 @@ impl Foot {
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
             let slope = -normal.dot(ahead) / normal.y.max(0.5);
             if let Some((edge, _)) = scene.ground(*point + ahead - back) {
-                short = short.max(edge - slope + room - point.y);
+                // Where it falls less than at this point, as behind an edge, it counts as it is.
+                let edge = (edge - slope).min(edge.max(height));
+                short = short.max(edge + room - point.y);
             }
         }
         let short = short

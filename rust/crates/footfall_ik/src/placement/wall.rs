@@ -18,7 +18,7 @@ pub(super) const SUNK_M: f32 = 0.005;
 /// millimetres, faster than it is pushed out of it, is not thrown over it.
 const FARTHER_M: [f32; 4] = [0.0, 0.0015, 0.003, 0.005];
 const FARTHER_DEPTH: f32 = 8.0;
-/// Cosine of the angle to the sole's middle beyond which a direction leads inwards.
+/// Cosine of the angle to the rest of the sole beyond which a direction leads inwards.
 const INWARDS: f32 = 0.25;
 /// Length below which a push counts as none, metres.
 const NOTHING_M: f32 = 1e-4;
@@ -55,12 +55,12 @@ impl Foot {
 }
 
 impl<T: Terrain> Scene<'_, T> {
-    /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole's middle is; at most 0 where it comes out of it. It may go
-    /// a little farther than that, which counts as [`FARTHER_DEPTH`] has it. Walls that it would leave on the other sides are under the sole.
-    pub(super) fn depth_beside(&mut self, point: Vec3, middle: Vec3, distance_m: f32) -> f32 {
-        let inwards = (middle - point).with_y(0.0).normalize_or_zero();
-        let inwards = WAYS.into_iter().filter(|way| way.dot(inwards) > INWARDS);
-        inwards.fold(f32::MAX, |least, way| {
+    /// Least depth below the ground of a point of a sole that goes so far to any side on which the sole is: its middle, or the other side of its rim, since a sole is narrow. It is at most 0 where
+    /// the point comes out of the ground. It may go a little farther than that, which counts as [`FARTHER_DEPTH`] has it. Walls that it would leave on the other sides are under the sole.
+    pub(super) fn depth_beside(&mut self, point: Vec3, sole: [Vec3; 2], distance_m: f32) -> f32 {
+        let inwards = sole.map(|within| (within - point).with_y(0.0).normalize_or_zero());
+        let leads = |way: &Vec3| inwards.iter().any(|inwards| way.dot(*inwards) > INWARDS);
+        WAYS.into_iter().filter(leads).fold(f32::MAX, |least, way| {
             FARTHER_M.into_iter().fold(least, |least, farther| {
                 let depth = self.depth(point + way * (distance_m + farther));
                 least.min(depth.max(0.0) + FARTHER_DEPTH * farther)
@@ -138,7 +138,7 @@ mod tests {
     fn toes_a_hair_in_a_riser_and_below_their_tread_are_no_deeper_than_that() {
         let toes = Vec3::new(0.0, -0.001, 0.0003);
         let depth = |toes: Vec3, middle: f32| {
-            before_riser(|scene| scene.depth_beside(toes, Vec3::Z * middle, 0.015))
+            before_riser(|scene| scene.depth_beside(toes, [Vec3::Z * middle; 2], 0.015))
         };
         let touching = depth(toes, -0.1);
         assert!((touching - 0.001).abs() < 1e-6, "{touching}");
@@ -150,6 +150,16 @@ mod tests {
             let within = depth(toes.with_z(z), middle);
             assert!((within - 0.171).abs() < 1e-6, "{within}");
         }
+    }
+
+    #[test]
+    fn a_sole_along_a_wall_is_beside_it_where_its_other_rim_is() {
+        let rim = Vec3::Z * 0.006;
+        let along = rim + Vec3::X * 0.2;
+        let depth =
+            |other: Vec3| before_riser(|scene| scene.depth_beside(rim, [along, other], 0.015));
+        assert!(depth(rim - Vec3::Z * 0.07) <= 0.0);
+        assert!((depth(rim + Vec3::Z * 0.07) - 0.17).abs() < 1e-6);
     }
 
     #[test]
