@@ -1,5 +1,6 @@
 //! Differences of steps from the mean step: with speed, between walkers, and from step to step.
 
+use crate::arm_swing;
 use crate::averages::upper_median;
 use crate::sequence::Sequence;
 use footfall_core::Side;
@@ -63,7 +64,8 @@ pub fn estimate(
         keep_whole_steps(&mut own);
         differences.append(&mut own);
     }
-    let speed = speed_response(&mut differences, corpus, frame_rate_hz);
+    let mut speed = speed_response(&mut differences, corpus, frame_rate_hz);
+    arm_swing::keep_shape(&mut speed.slopes, steps);
     let (walker, walker_weights) = walker_components(&mut differences);
     let (step, step_correlation) = step_components(&differences);
     let variation = Variation {

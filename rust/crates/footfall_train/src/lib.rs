@@ -5,6 +5,7 @@
 //! [`adapt`] (a style from a dozen steps); [`dynamics`] (switching models); [`imu`] (sensor models); [`standing`], [`jumping`] and [`crouching`]; [`recordings`], [`model_file`] (input of tools) and [`job`] (background work for windows); and [`evaluate`], which evaluates the results.
 
 pub mod adapt;
+mod arm_swing;
 pub mod average;
 mod average_body;
 mod averages;
