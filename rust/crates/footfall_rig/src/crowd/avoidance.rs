@@ -247,6 +247,17 @@ mod tests {
     }
 
     #[test]
+    fn whoever_goes_along_too_near_is_left() {
+        for side in [-1.0, 1.0] {
+            let other = somebody(0.35 * side, 0.1, 1.3 * Vec2::Y);
+            let detour = AHEAD.detour([other].iter()).unwrap();
+            let velocity = direction(detour.aside) * (1.3 * detour.speed);
+            let then = other.place + (other.velocity - velocity) * TURNING_SECS;
+            assert!(then.length() > APART_M, "{detour:?}: {then}");
+        }
+    }
+
+    #[test]
     fn one_who_stands_or_crosses_is_not_walked_into() {
         let crowd = [
             somebody(0.1, 2.0, Vec2::ZERO),
