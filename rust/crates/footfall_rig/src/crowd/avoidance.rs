@@ -99,12 +99,13 @@ impl Wayfarer {
                     break;
                 }
                 let pace = speed * self.speed_mps;
-                let turned = slowed * pace;
-                let turned = turned + PRESENT_SHARE * (self.present_mps - turned);
+                let velocity = wanted * pace;
+                let slow = slowed * pace;
+                let meanwhile = slow + PRESENT_SHARE * (self.present_mps - slow);
                 let course = Course {
-                    velocity: wanted * pace,
-                    ahead: (facing * self.present_mps - wanted * pace) * LAG_SECS,
-                    turned: turning * turned * TURNING_SECS,
+                    velocity,
+                    ahead: (facing * self.present_mps - velocity) * LAG_SECS,
+                    turned: turning * meanwhile * TURNING_SECS,
                 };
                 let cost = detour + near.cost(&course);
                 if cost < best.0 {
