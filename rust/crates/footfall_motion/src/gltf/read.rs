@@ -1,5 +1,6 @@
 //! Animations of `.glb` and `.gltf` files as recordings. `file.glb#Name` is one of several.
 
+use super::buffers::{self, BufferError};
 use super::sample::{Local, Track};
 use crate::bvh::BvhFile;
 use crate::skeletal::{Bone, SkeletalMotion};
@@ -19,12 +20,22 @@ const LONGEST_SECS: f32 = 3600.0;
 #[derive(Debug, thiserror::Error)]
 pub enum GltfError {
     /// The file cannot be read.
-    #[error("{}: {source}; check that the file exists and is glTF 2.0 with its buffers beside it, or export it again as .glb", path.display())]
+    #[error("{}: {source}; check that the file exists and is glTF 2.0, or export it again as .glb", path.display())]
     File {
         /// The file.
         path: PathBuf,
         /// Fault.
         source: gltf::Error,
+    },
+    /// The numbers of its animations cannot be read.
+    #[error("{}: buffer {index}: {source}; put the file's buffers beside it, or export it again as .glb", path.display())]
+    Buffer {
+        /// The file.
+        path: PathBuf,
+        /// The buffer, counted from 0.
+        index: usize,
+        /// Fault.
+        source: BufferError,
     },
     /// No animation turns a bone.
     #[error("{}: no animation moves a skeleton; export the character with its animation", path.display())]
@@ -106,7 +117,7 @@ fn split_name(path: &Path) -> (PathBuf, Option<String>) {
 
 struct Opened {
     document: Document,
-    buffers: Vec<gltf::buffer::Data>,
+    buffers: Vec<Vec<u8>>,
 }
 
 fn open(path: &Path) -> Result<Opened, GltfError> {
@@ -114,9 +125,15 @@ fn open(path: &Path) -> Result<Opened, GltfError> {
         path: path.to_owned(),
         source,
     };
-    let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
-    // Pictures are left alone: they may be missing, or in a form that only an engine knows.
-    let buffers = gltf::import_buffers(&document, path.parent(), blob).map_err(failed)?;
+    let bytes = std::fs::read(path).map_err(|error| failed(error.into()))?;
+    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes).map_err(failed)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let buffers = buffers::read(&document, blob, folder);
+    let buffers = buffers.map_err(|(index, source)| GltfError::Buffer {
+        path: path.to_owned(),
+        index,
+        source,
+    })?;
     Ok(Opened { document, buffers })
 }
 

@@ -3,7 +3,6 @@
 use glam::{Affine3A, Quat, Vec3};
 use gltf::animation::util::ReadOutputs;
 use gltf::animation::{Channel, Interpolation};
-use gltf::buffer::Data;
 
 /// A node's own transform in parts, as animations change it.
 #[derive(Clone, Copy, Debug)]
@@ -44,8 +43,8 @@ enum Values {
 
 impl Track {
     /// Reads a channel; `None` for weights of morph targets and for channels without keys.
-    pub(super) fn read(channel: &Channel<'_>, buffers: &[Data]) -> Option<Self> {
-        let reader = channel.reader(|buffer| buffers.get(buffer.index()).map(|data| &data.0[..]));
+    pub(super) fn read(channel: &Channel<'_>, buffers: &[Vec<u8>]) -> Option<Self> {
+        let reader = channel.reader(|buffer| buffers.get(buffer.index()).map(Vec::as_slice));
         let times: Vec<f32> = reader.read_inputs()?.collect();
         let values = match reader.read_outputs()? {
             ReadOutputs::Translations(places) => Values::Places(places.map(Vec3::from).collect()),

@@ -102,13 +102,14 @@ mod tests {
             poses,
         };
         let glb = clip_to_glb(&clip, "walk");
-        let (document, buffers, _) = gltf::import_slice(&glb).unwrap();
+        let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&glb).unwrap();
+        let chunk = blob.unwrap();
         let animation = document.animations().next().unwrap();
         assert_eq!(animation.name(), Some("walk"));
         assert_eq!(document.nodes().count(), JOINT_COUNT);
         let mut seen = 0;
         for channel in animation.channels() {
-            let reader = channel.reader(|buffer| Some(&buffers[buffer.index()]));
+            let reader = channel.reader(|_| Some(&chunk));
             let times: Vec<f32> = reader.read_inputs().unwrap().collect();
             assert!((times[4] - 4.0 / 30.0).abs() < 1e-6);
             let name = channel.target().node().name().unwrap_or_default();
