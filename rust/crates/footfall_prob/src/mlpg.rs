@@ -51,7 +51,7 @@ pub struct Pull<'a, R> {
 /// Buffers of [`mlpg`], owned by the caller: nothing is allocated while they suffice.
 #[derive(Debug)]
 pub struct MlpgWorkspace<R: Real> {
-    plan: Plan,
+    layout: Layout,
     rows: Vec<[R::Block; 6]>,
     factors: Vec<[R::Block; 3]>,
 }
@@ -59,7 +59,7 @@ pub struct MlpgWorkspace<R: Real> {
 impl<R: Real> Default for MlpgWorkspace<R> {
     fn default() -> Self {
         Self {
-            plan: Plan::default(),
+            layout: Layout::default(),
             rows: Vec::new(),
             factors: Vec::new(),
         }
@@ -75,9 +75,9 @@ impl<R: Real> MlpgWorkspace<R> {
     /// Buffers that suffice for up to `n_frames` frames.
     pub fn with_capacity(n_frames: usize) -> Self {
         let mut workspace = Self::new();
-        workspace.plan.row_of_frame.reserve(n_frames + 4);
+        workspace.layout.row_of_frame.reserve(n_frames + 4);
         // At worst every frame is a run of its own; one more row stands for frames outside.
-        workspace.plan.rows.reserve(n_frames + 1);
+        workspace.layout.rows.reserve(n_frames + 1);
         workspace.rows.reserve(n_frames + 1);
         workspace.factors.reserve(n_frames);
         workspace
@@ -87,7 +87,7 @@ impl<R: Real> MlpgWorkspace<R> {
 /// Data that all blocks of dimensions share.
 #[doc(hidden)]
 #[derive(Debug, Default)]
-pub struct Plan {
+pub struct Layout {
     windows: Windows,
     dim: usize,
     n_frames: usize,
@@ -108,7 +108,7 @@ struct Row {
 /// One block of dimensions.
 #[doc(hidden)]
 #[derive(Debug)]
-pub struct Job<'a, R: Real> {
+pub struct DimBlock<'a, R: Real> {
     means: &'a [R],
     precisions: &'a [R],
     pull_strength: R::Block,
@@ -120,7 +120,7 @@ pub struct Job<'a, R: Real> {
     lowest_pivot: R::Block,
 }
 
-impl Plan {
+impl Layout {
     fn prepare<R>(&mut self, problem: &MlpgProblem<'_, R>) {
         let n_frames = problem.state_of_frame.len();
         self.windows = problem.windows;
@@ -238,7 +238,7 @@ pub fn mlpg_part<R: Real>(
 
 /// [`mlpg_part`] with a given kernel.
 fn mlpg_with<R: Real>(
-    solve: fn(&Plan, &mut Job<'_, R>),
+    solve: fn(&Layout, &mut DimBlock<'_, R>),
     problem: &MlpgProblem<'_, R>,
     wanted: usize,
     workspace: &mut MlpgWorkspace<R>,
@@ -251,17 +251,19 @@ fn mlpg_with<R: Real>(
         return Ok(());
     }
     let zero = R::Block::splat(R::default());
-    workspace.plan.prepare(problem);
+    workspace.layout.prepare(problem);
     // Every block overwrites what it reads, so old contents may stay.
-    workspace.rows.resize(workspace.plan.rows.len(), [zero; 6]);
+    workspace
+        .rows
+        .resize(workspace.layout.rows.len(), [zero; 6]);
     workspace.factors.resize(n_frames, [zero; 3]);
     let lanes = R::Block::LANES;
-    for block in 0..wanted.min(dim).div_ceil(lanes) {
+    for index in 0..wanted.min(dim).div_ceil(lanes) {
         // The last block starts early rather than run half empty, so some dimensions are solved twice.
-        let first_dim = (block * lanes).min(dim.saturating_sub(lanes));
+        let first_dim = (index * lanes).min(dim.saturating_sub(lanes));
         let n_dims = lanes.min(dim - first_dim);
         let pull = |values: Option<&[R]>| values.map_or(zero, |v| R::Block::load(&v[first_dim..]));
-        let mut job = Job {
+        let mut block = DimBlock {
             means: problem.means,
             precisions: problem.precisions,
             pull_strength: pull(problem.pull.map(|p| p.strength)),
@@ -272,8 +274,8 @@ fn mlpg_with<R: Real>(
             trajectory: &mut *trajectory,
             lowest_pivot: R::Block::splat(R::narrow(f64::INFINITY)),
         };
-        solve(&workspace.plan, &mut job);
-        let lowest = job.lowest_pivot.lanes()[..n_dims]
+        solve(&workspace.layout, &mut block);
+        let lowest = block.lowest_pivot.lanes()[..n_dims]
             .iter()
             .position(|p| p.widen() <= 0.0);
         if let Some(lane) = lowest {

@@ -32,7 +32,7 @@ struct Packet {
 }
 
 /// One direction.
-struct Way {
+struct Direction {
     socket: UdpSocket,
     waiting: VecDeque<Packet>,
 }
@@ -87,7 +87,7 @@ fn pass_on(front: UdpSocket, back: UdpSocket, server: u16, seed: u32, over: &Ato
     let server = SocketAddr::from(([127, 0, 0, 1], server));
     let mut client = None;
     let mut chance = seed;
-    let mut ways = [front, back].map(|socket| Way {
+    let mut directions = [front, back].map(|socket| Direction {
         socket,
         waiting: VecDeque::new(),
     });
@@ -95,7 +95,7 @@ fn pass_on(front: UdpSocket, back: UdpSocket, server: u16, seed: u32, over: &Ato
     while !over.load(Ordering::Relaxed) {
         for from in 0..2 {
             loop {
-                let (length, sender) = match ways[from].socket.recv_from(&mut bytes) {
+                let (length, sender) = match directions[from].socket.recv_from(&mut bytes) {
                     Ok(received) => received,
                     // A server that has gone answers so.
                     Err(error) if error.kind() == ErrorKind::ConnectionRefused => continue,
@@ -111,21 +111,21 @@ fn pass_on(front: UdpSocket, back: UdpSocket, server: u16, seed: u32, over: &Ato
                     continue;
                 };
                 let late = Duration::from_millis((drawn / LOST_OF % JITTER_MS).into());
-                ways[1 - from].waiting.push_back(Packet {
+                directions[1 - from].waiting.push_back(Packet {
                     due: Instant::now() + DELAY + late,
                     to,
                     bytes: bytes[..length].to_vec(),
                 });
             }
         }
-        for way in &mut ways {
-            while way
+        for direction in &mut directions {
+            while direction
                 .waiting
                 .front()
                 .is_some_and(|next| next.due <= Instant::now())
             {
-                if let Some(packet) = way.waiting.pop_front() {
-                    way.socket.send_to(&packet.bytes, packet.to).ok();
+                if let Some(packet) = direction.waiting.pop_front() {
+                    direction.socket.send_to(&packet.bytes, packet.to).ok();
                 }
             }
         }

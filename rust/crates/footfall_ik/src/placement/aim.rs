@@ -58,7 +58,7 @@ pub(super) struct Step<'a> {
 }
 
 /// The ground along the step, and its limits.
-struct Way {
+struct StepGround {
     profile: Profile,
     /// The sole's place in the animation, in the world, and its distance from the standing foot, metres.
     flat: Frame,
@@ -96,32 +96,32 @@ impl Step<'_> {
             aside_m: self.room_aside(&flat),
             ..scene.search()
         };
-        let way = Way {
+        let ground = StepGround {
             profile,
             flat,
             length,
             standing: self.standing.position.dot(up),
             bounds: self.bounds(length, search.may_shift),
         };
-        let best = self.search(scene, &way, &search);
+        let best = self.search(scene, &ground, &search);
         let best = best.filter(|(cost, _)| *cost < ASKEW_COST).or_else(|| {
             let thorough = Search {
                 thorough: true,
                 ..search
             };
-            self.search(scene, &way, &thorough)
+            self.search(scene, &ground, &thorough)
         });
         best.map(|(_, aim)| aim)
     }
 
-    /// The best place on the way, and its cost.
+    /// The best place on the ground along the step, and its cost.
     fn search<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
-        way: &Way,
+        ground: &StepGround,
         search: &Search,
     ) -> Option<(f32, Aim)> {
-        let (least, most) = way.bounds;
+        let (least, most) = ground.bounds;
         let mut best: Option<(f32, Aim)> = None;
         let trials = (least.max(most) / TRIAL_M) as usize;
         for trial in (0..=trials).step_by(search.spread()) {
@@ -135,7 +135,7 @@ impl Step<'_> {
                     continue;
                 }
                 let least = best.map_or(f32::MAX, |(cost, _)| cost);
-                if let Some(better) = self.weigh(scene, way, search, shift, least) {
+                if let Some(better) = self.weigh(scene, ground, search, shift, least) {
                     best = Some(better);
                 }
             }
@@ -147,23 +147,23 @@ impl Step<'_> {
     fn weigh<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
-        way: &Way,
+        ground: &StepGround,
         search: &Search,
         shift: f32,
         most: f32,
     ) -> Option<(f32, Aim)> {
-        let (length, profile) = (way.length, &way.profile);
+        let (length, profile) = (ground.length, &ground.profile);
         let place = Frame {
             position: profile.at(length + shift, profile.height(length + shift)?),
-            ..way.flat
+            ..ground.flat
         };
         let farther = if shift > 0.0 { LONGER_COST } else { 1.0 };
         let shifted = farther * SHIFT_COST * shift.abs();
         let (lie, cost) = search.judge(scene.terrain, &place, self.rocker, most - shifted)?;
         let sole = lie.sole.position.dot(search.up);
-        let rise = (sole - way.standing) / self.leg_m;
+        let rise = (sole - ground.standing) / self.leg_m;
         let effort = RISE_COST * self.leg_m * (rise.abs() - EASY_RISE).max(0.0);
-        let stays = (sole - way.standing).abs() < EDGE_M && self.is_on_stairs();
+        let stays = (sole - ground.standing).abs() < EDGE_M && self.is_on_stairs();
         let cost = cost + shifted + effort + if stays { SAME_TREAD_COST } else { 0.0 };
         if rise.abs() > MOST_RISE || cost >= most {
             return None;
@@ -171,11 +171,11 @@ impl Step<'_> {
         let height = |along_m: f32| profile.height(along_m);
         let next = height(2.0 * length + shift).or(height(1.5 * length + shift));
         let easy = EASY_RISE * self.leg_m;
-        let ahead = next.map_or(0.0, |next| next - way.standing);
+        let ahead = next.map_or(0.0, |next| next - ground.standing);
         let mut foothold = lie.foothold(scene.terrain)?;
         let normal = lie.sole.up();
         let slope = -normal.dot(profile.along) / normal.dot(search.up).max(0.5);
-        let edge = sole - way.standing - slope * (length + shift);
+        let edge = sole - ground.standing - slope * (length + shift);
         foothold.on_ball |= edge.abs() > EDGE_M;
         let aim = Aim {
             foothold,

@@ -22,8 +22,13 @@ pub enum BufferError {
         source: io::Error,
     },
     /// Its URI cannot be read.
-    #[error("cannot read the URI \"{0}\"")]
-    Uri(String),
+    #[error("cannot read the URI \"{uri}\": {fault}")]
+    Uri {
+        /// Its beginning: a whole buffer may be written there.
+        uri: String,
+        /// Fault.
+        fault: String,
+    },
     /// The binary chunk of a `.glb` is missing.
     #[error("the file has no binary chunk")]
     NoChunk,
@@ -66,17 +71,20 @@ pub(super) fn read(
 
 /// The bytes that a URI leads to.
 fn follow(uri: &str, folder: &Path) -> Result<Vec<u8>, BufferError> {
-    // A whole buffer may be written there: an error shows the beginning.
-    let unreadable = || BufferError::Uri(uri.chars().take(40).collect());
+    let unreadable = |fault: String| BufferError::Uri {
+        uri: uri.chars().take(40).collect(),
+        fault,
+    };
     if uri.starts_with("data:") {
-        let data = DataUrl::process(uri).map_err(|_| unreadable())?;
-        let (bytes, _) = data.decode_to_vec().map_err(|_| unreadable())?;
+        let data = DataUrl::process(uri).map_err(|error| unreadable(error.to_string()))?;
+        let decoded = data.decode_to_vec();
+        let (bytes, _) = decoded.map_err(|error| unreadable(error.to_string()))?;
         return Ok(bytes);
     }
     let path = uri.strip_prefix("file:").unwrap_or(uri);
     let path = path.strip_prefix("//").unwrap_or(path);
     let name = percent_decode_str(path).decode_utf8();
-    let name: Cow<'_, str> = name.map_err(|_| unreadable())?;
+    let name: Cow<'_, str> = name.map_err(|error| unreadable(error.to_string()))?;
     std::fs::read(folder.join(&*name)).map_err(|source| BufferError::Missing {
         name: name.into_owned(),
         source,
@@ -129,7 +137,11 @@ mod tests {
         );
         for uri in ["%FF.bin", "data:;base64,A", "data:no comma"] {
             let said = fault(uri, 1);
-            assert_eq!(said, format!("cannot read the URI \"{uri}\""));
+            let begins = format!("cannot read the URI \"{uri}\": ");
+            assert!(
+                said.starts_with(&begins) && said.len() > begins.len(),
+                "{said}"
+            );
         }
     }
 

@@ -10,7 +10,7 @@ use multiversion::target::match_target;
 
 use super::lanes::Real;
 use super::lanes::sealed::Block as _;
-use super::{Job, Plan, Row};
+use super::{DimBlock, Layout, Row};
 use crate::windows::Windows;
 
 /// Solves one block in f64.
@@ -19,11 +19,11 @@ use crate::windows::Windows;
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-pub(super) fn solve_f64(plan: &Plan, job: &mut Job<'_, f64>) {
+pub(super) fn solve_f64(layout: &Layout, block: &mut DimBlock<'_, f64>) {
     match_target! {
-        "x86_64+fma" => solve::<f64, true>(plan, job),
-        "aarch64+neon" => solve::<f64, true>(plan, job),
-        _ => solve::<f64, false>(plan, job),
+        "x86_64+fma" => solve::<f64, true>(layout, block),
+        "aarch64+neon" => solve::<f64, true>(layout, block),
+        _ => solve::<f64, false>(layout, block),
     }
 }
 
@@ -33,27 +33,27 @@ pub(super) fn solve_f64(plan: &Plan, job: &mut Job<'_, f64>) {
     "x86_64+avx2+fma",
     "aarch64+neon"
 ))]
-pub(super) fn solve_f32(plan: &Plan, job: &mut Job<'_, f32>) {
+pub(super) fn solve_f32(layout: &Layout, block: &mut DimBlock<'_, f32>) {
     match_target! {
-        "x86_64+fma" => solve::<f32, true>(plan, job),
-        "aarch64+neon" => solve::<f32, true>(plan, job),
-        _ => solve::<f32, false>(plan, job),
+        "x86_64+fma" => solve::<f32, true>(layout, block),
+        "aarch64+neon" => solve::<f32, true>(layout, block),
+        _ => solve::<f32, false>(layout, block),
     }
 }
 
 /// Solver that is compiled for each instruction set; on its own, the fallback for every target.
 #[inline(always)]
-pub(super) fn solve<R: Real, const FUSED: bool>(plan: &Plan, job: &mut Job<'_, R>) {
-    match plan.windows {
+pub(super) fn solve<R: Real, const FUSED: bool>(layout: &Layout, block: &mut DimBlock<'_, R>) {
+    match layout.windows {
         Windows::Paper => {
-            fill_rows::<R, FUSED>(plan, job, [0.25, 0.0625], [0.5, 0.25]);
-            factorise::<R, FUSED, true>(plan, job);
-            substitute_back::<R, FUSED, 2>(plan, job);
+            fill_rows::<R, FUSED>(layout, block, [0.25, 0.0625], [0.5, 0.25]);
+            factorise::<R, FUSED, true>(layout, block);
+            substitute_back::<R, FUSED, 2>(layout, block);
         }
         Windows::Compact => {
-            fill_rows::<R, FUSED>(plan, job, [0.25, 1.0], [0.5, 1.0]);
-            factorise::<R, FUSED, false>(plan, job);
-            substitute_back::<R, FUSED, 1>(plan, job);
+            fill_rows::<R, FUSED>(layout, block, [0.25, 1.0], [0.5, 1.0]);
+            factorise::<R, FUSED, false>(layout, block);
+            substitute_back::<R, FUSED, 1>(layout, block);
         }
     }
 }
@@ -63,28 +63,28 @@ pub(super) fn solve<R: Real, const FUSED: bool>(plan: &Plan, job: &mut Job<'_, R
 /// coefficient, so that the frame loop needs only sums and doublings.
 #[inline(always)]
 fn fill_rows<R: Real, const FUSED: bool>(
-    plan: &Plan,
-    job: &mut Job<'_, R>,
+    layout: &Layout,
+    block: &mut DimBlock<'_, R>,
     squared: [f64; 2],
     plain: [f64; 2],
 ) {
     let zero = R::Block::splat(R::default());
-    let dim = plan.dim;
-    for (row, out) in plan.rows.iter().zip(&mut *job.rows) {
+    let dim = layout.dim;
+    for (row, out) in layout.rows.iter().zip(&mut *block.rows) {
         *out = [zero; 6];
         let Some(state) = row.state else { continue };
-        let at = |window: usize| state as usize * 3 * dim + window * dim + job.first_dim;
+        let at = |window: usize| state as usize * 3 * dim + window * dim + block.first_dim;
         let load =
-            |table: &[R], window| R::Block::load(&table[at(window)..][..dim - job.first_dim]);
-        let precision = load(job.precisions, 0);
-        out[0] = precision.add(job.pull_strength);
+            |table: &[R], window| R::Block::load(&table[at(window)..][..dim - block.first_dim]);
+        let precision = load(block.precisions, 0);
+        out[0] = precision.add(block.pull_strength);
         out[3] = precision
-            .mul(load(job.means, 0))
-            .add_mul::<FUSED>(job.pull_strength, job.pull_towards);
+            .mul(load(block.means, 0))
+            .add_mul::<FUSED>(block.pull_strength, block.pull_towards);
         for (window, kept) in [(1, row.keeps_delta), (2, row.keeps_delta_delta)] {
             if kept {
-                let precision = load(job.precisions, window);
-                let product = precision.mul(load(job.means, window));
+                let precision = load(block.precisions, window);
+                let product = precision.mul(load(block.means, window));
                 out[window] = precision.mul(R::Block::splat(R::narrow(squared[window - 1])));
                 out[3 + window] = product.mul(R::Block::splat(R::narrow(plain[window - 1])));
             }
@@ -218,13 +218,16 @@ fn step<'a, R: Real, const FUSED: bool, const PAPER: bool>(
 }
 
 #[inline(always)]
-fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(plan: &Plan, job: &mut Job<'_, R>) {
+fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(
+    layout: &Layout,
+    block: &mut DimBlock<'_, R>,
+) {
     let zero = R::Block::splat(R::default());
-    let rows = &*job.rows;
-    let n_frames = plan.n_frames;
-    let n_fixed = plan.n_fixed;
+    let rows = &*block.rows;
+    let n_frames = layout.n_frames;
+    let n_fixed = layout.n_fixed;
     // Padded by two at either end, so that every frame has two neighbours.
-    let row_of_frame = &plan.row_of_frame[..n_frames + 4];
+    let row_of_frame = &layout.row_of_frame[..n_frames + 4];
     let row = |padded: usize| &rows[row_of_frame[padded] as usize];
     let nothing = Carry {
         pivot: zero,
@@ -236,13 +239,13 @@ fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(plan: &Plan, job: &m
     let (mut this, mut other) = (nothing, nothing);
     // Beyond four frames back nothing is coupled to the first free frame.
     for t in n_fixed.saturating_sub(4)..n_fixed {
-        let frame = &job.trajectory[t * plan.dim..][..plan.dim];
-        let value = R::Block::load(&frame[job.first_dim..]);
+        let frame = &block.trajectory[t * layout.dim..][..layout.dim];
+        let value = R::Block::load(&frame[block.first_dim..]);
         let around = [row(t), row(t + 1), row(t + 2), row(t + 3), row(t + 4)];
         let next = fix::<R, FUSED>(this, line::<R, PAPER>(around), value);
         (this, other) = if PAPER { (other, next) } else { (next, other) };
     }
-    let mut lowest = job.lowest_pivot;
+    let mut lowest = block.lowest_pivot;
     let mut around = [
         row(n_fixed),
         row(n_fixed),
@@ -251,7 +254,7 @@ fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(plan: &Plan, job: &m
         row(n_fixed + 3),
     ];
     let entering = &row_of_frame[n_fixed + 4..];
-    let factors = &mut job.factors[n_fixed..n_frames];
+    let factors = &mut block.factors[n_fixed..n_frames];
     if PAPER {
         // Two independent chains, even and odd: in pairs, so that each stays in registers.
         let (pairs, last) = entering.as_chunks::<2>();
@@ -292,25 +295,25 @@ fn factorise<R: Real, const FUSED: bool, const PAPER: bool>(plan: &Plan, job: &m
             );
         }
     }
-    job.lowest_pivot = lowest;
+    block.lowest_pivot = lowest;
 }
 
 #[inline(always)]
 fn substitute_back<R: Real, const FUSED: bool, const STRIDE: usize>(
-    plan: &Plan,
-    job: &mut Job<'_, R>,
+    layout: &Layout,
+    block: &mut DimBlock<'_, R>,
 ) {
     let zero = R::Block::splat(R::default());
-    let dim = plan.dim;
-    let free = &mut job.trajectory[plan.n_fixed * dim..];
-    let factors = &job.factors[plan.n_fixed..plan.n_frames];
+    let dim = layout.dim;
+    let free = &mut block.trajectory[layout.n_fixed * dim..];
+    let factors = &block.factors[layout.n_fixed..layout.n_frames];
     // The four frames after the present one, nearest first.
     let mut after = [zero; 4];
     for (frame, [near, far, rhs]) in free.chunks_exact_mut(dim).zip(factors).rev() {
         let value = rhs
             .sub_mul::<FUSED>(*far, after[2 * STRIDE - 1])
             .sub_mul::<FUSED>(*near, after[STRIDE - 1]);
-        value.store(&mut frame[job.first_dim..]);
+        value.store(&mut frame[block.first_dim..]);
         after = [value, after[0], after[1], after[2]];
     }
 }

@@ -4,7 +4,7 @@
 use std::fmt::Debug;
 
 use super::kernel;
-use super::{Job, Plan};
+use super::{DimBlock, Layout};
 
 /// f32 or f64: the precision in which [`mlpg`](super::mlpg) runs. Sealed.
 pub trait Real:
@@ -21,7 +21,7 @@ pub trait Real:
     fn narrow(value: f64) -> Self;
     /// Solves one block of dimensions with the widest vectors of the machine.
     #[doc(hidden)]
-    fn solve(plan: &Plan, job: &mut Job<'_, Self>);
+    fn solve(layout: &Layout, block: &mut DimBlock<'_, Self>);
 }
 
 pub(super) mod sealed {
@@ -70,8 +70,8 @@ macro_rules! real {
                 value as $real
             }
 
-            fn solve(plan: &Plan, job: &mut Job<'_, Self>) {
-                $solve(plan, job);
+            fn solve(layout: &Layout, block: &mut DimBlock<'_, Self>) {
+                $solve(layout, block);
             }
         }
 

@@ -54,12 +54,12 @@ impl Allowance {
 
 /// Distance that a walker may have covered.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Way {
+pub(super) struct TravelLimit {
     allowance: Allowance,
     last: Option<Vec3>,
 }
 
-impl Way {
+impl TravelLimit {
     /// Creates the limits of a receiver.
     pub(super) const fn believed() -> Self {
         Self {
@@ -87,9 +87,9 @@ impl Way {
     /// # Errors
     /// The distance, when it is too far.
     pub(super) fn go_on(&mut self, place: Vec3) -> Result<(), f32> {
-        let way = self.last.map_or(0.0, |last| last.distance(place));
-        if !self.allowance.take(way) {
-            return Err(way);
+        let distance = self.last.map_or(0.0, |last| last.distance(place));
+        if !self.allowance.take(distance) {
+            return Err(distance);
         }
         self.last = Some(place);
         Ok(())
@@ -102,7 +102,7 @@ pub(super) struct Gate {
     tag: u16,
     messages: Allowance,
     identities: Allowance,
-    way: Way,
+    travel: TravelLimit,
     last_time: Option<u16>,
     silent_secs: f32,
 }
@@ -113,7 +113,7 @@ impl Gate {
             tag,
             messages: Allowance::new(MOST_AT_ONCE, MOST_A_SECOND as f32, MOST_AT_ONCE),
             identities: Allowance::new(IDENTITIES_AT_ONCE, IDENTITIES_A_SECOND, IDENTITIES_AT_ONCE),
-            way: Way::believed(),
+            travel: TravelLimit::believed(),
             last_time: None,
             silent_secs: 0.0,
         }
@@ -123,7 +123,7 @@ impl Gate {
     pub(super) fn pass(&mut self, secs: f32) {
         self.messages.grow(secs);
         self.identities.grow(secs);
-        self.way.pass(secs);
+        self.travel.pass(secs);
         self.silent_secs += secs;
     }
 
@@ -138,7 +138,7 @@ impl Gate {
         let another = tag != self.tag;
         if another {
             self.tag = tag;
-            self.way = Way::believed();
+            self.travel = TravelLimit::believed();
         }
         Ok(another)
     }
@@ -160,7 +160,7 @@ impl Gate {
         {
             return Err(ReplicaError::Old);
         }
-        self.way
+        self.travel
             .go_on(update.aim.position)
             .map_err(ReplicaError::TooFar)?;
         self.last_time = Some(update.time);

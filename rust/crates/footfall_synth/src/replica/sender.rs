@@ -1,7 +1,7 @@
 //! Sender of a walker's messages.
 
 use super::clock::ReplicaClock;
-use super::gate::Way;
+use super::gate::TravelLimit;
 use super::identity::tag;
 use super::update::{Planned, UPDATE_BYTES, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
@@ -17,7 +17,7 @@ use footfall_core::rotation::from_heading;
 #[derive(Clone, Copy, Debug)]
 pub struct WalkSender {
     secs: f64,
-    way: Way,
+    travel: TravelLimit,
     /// Number of times the walker was moved elsewhere.
     epoch: u8,
 }
@@ -33,7 +33,7 @@ impl WalkSender {
     pub const fn new() -> Self {
         Self {
             secs: 0.0,
-            way: Way::sure(),
+            travel: TravelLimit::sure(),
             epoch: 0,
         }
     }
@@ -42,7 +42,7 @@ impl WalkSender {
     pub fn step(&mut self, dt_secs: f32) {
         if dt_secs > 0.0 && dt_secs.is_finite() {
             self.secs += f64::from(dt_secs);
-            self.way.pass(dt_secs);
+            self.travel.pass(dt_secs);
         }
     }
 
@@ -87,9 +87,9 @@ impl WalkSender {
         };
         // A place out of range cannot be sent, so it does not count as reached.
         update.pack()?;
-        if self.way.go_on(aim.position).is_err() {
+        if self.travel.go_on(aim.position).is_err() {
             self.epoch = self.epoch.wrapping_add(1);
-            self.way = Way::sure();
+            self.travel = TravelLimit::sure();
         }
         update.tag = tag(steps.space.fingerprint(), &generator.config, self.epoch);
         update.pack()

@@ -79,13 +79,13 @@ pub fn listen(config: SerialConfig) -> Link {
     let mut device = None;
     Link::keep("serial", RETRY, move |link| match open(&config) {
         Ok((name, port)) => {
-            let mut session = Session {
+            let mut opened = OpenPort {
                 link,
                 config: &config,
                 name,
                 port,
             };
-            session.run(&mut device)
+            opened.run(&mut device)
         }
         Err(problem) => problem,
     })
@@ -115,14 +115,14 @@ fn open(config: &SerialConfig) -> Result<(String, Box<dyn SerialPort>), String> 
 }
 
 /// An open port.
-struct Session<'a> {
+struct OpenPort<'a> {
     link: &'a LinkWriter,
     config: &'a SerialConfig,
     name: String,
     port: Box<dyn SerialPort>,
 }
 
-impl Session<'_> {
+impl OpenPort<'_> {
     /// Listens until the port is gone, the protocol changes, or it is time to stop. Returns why.
     fn run(&mut self, device: &mut Option<DeviceWriter>) -> String {
         let format = match self.find_out() {
