@@ -6,7 +6,7 @@ use data_url::DataUrl;
 use gltf::Document;
 use gltf::buffer::Source;
 use percent_encoding::percent_decode_str;
-use std::borrow::Cow;
+use std::fmt::Display;
 use std::io;
 use std::path::Path;
 
@@ -71,20 +71,20 @@ pub(super) fn read(
 
 /// The bytes that a URI leads to.
 fn follow(uri: &str, folder: &Path) -> Result<Vec<u8>, BufferError> {
-    let unreadable = |fault: String| BufferError::Uri {
+    let unreadable = |fault: &dyn Display| BufferError::Uri {
         uri: uri.chars().take(40).collect(),
-        fault,
+        fault: fault.to_string(),
     };
     if uri.starts_with("data:") {
-        let data = DataUrl::process(uri).map_err(|error| unreadable(error.to_string()))?;
+        let data = DataUrl::process(uri).map_err(|error| unreadable(&error))?;
         let decoded = data.decode_to_vec();
-        let (bytes, _) = decoded.map_err(|error| unreadable(error.to_string()))?;
+        let (bytes, _) = decoded.map_err(|error| unreadable(&error))?;
         return Ok(bytes);
     }
     let path = uri.strip_prefix("file:").unwrap_or(uri);
     let path = path.strip_prefix("//").unwrap_or(path);
     let name = percent_decode_str(path).decode_utf8();
-    let name: Cow<'_, str> = name.map_err(|error| unreadable(error.to_string()))?;
+    let name = name.map_err(|error| unreadable(&error))?;
     std::fs::read(folder.join(&*name)).map_err(|source| BufferError::Missing {
         name: name.into_owned(),
         source,

@@ -125,8 +125,7 @@ fn open(path: &Path) -> Result<Opened, GltfError> {
         path: path.to_owned(),
         source,
     };
-    let bytes = std::fs::read(path).map_err(|error| failed(error.into()))?;
-    let gltf::Gltf { document, blob } = gltf::Gltf::from_slice(&bytes).map_err(failed)?;
+    let gltf::Gltf { document, blob } = gltf::Gltf::open(path).map_err(failed)?;
     let folder = path.parent().unwrap_or(Path::new(""));
     let buffers = buffers::read(&document, blob, folder);
     let buffers = buffers.map_err(|(index, source)| GltfError::Buffer {
