@@ -1,7 +1,7 @@
 //! `cargo xtask library`: the add-on's library, built and put where `footfall.gdextension` looks for it.
 //!
 //! There are two flavours. The editor's (`libfootfall_godot.editor.so` and its like) holds the class docs and the dock;
-//! exported games load the plain one. Both share every compiled crate but `godot` and `footfall_godot`.
+//! exported games load the plain one. Both share every compiled crate but `footfall_godot`; as it is released, the plain one shares none.
 
 mod platform;
 
@@ -25,6 +25,9 @@ const EXPORTS: &str = "crates/footfall_godot/windows.def";
 /// Level of the package whose one function fills the engine's method table. At level z LLVM's outliner, which arm64 alone has, takes more than a quarter of an hour for it; elsewhere level z makes
 /// the library 0.6 MB smaller.
 const METHOD_TABLE: &str = r#"profile.shipped.package.godot-ffi.opt-level="s""#;
+
+/// Feature of the editor's flavour that the other one takes where it is not released: `godot`, which takes minutes to compile, then serves both. No game reads the docs.
+const CLASS_DOCS: &str = "godot/register-docs";
 
 /// Settings of the editor's flavour for Android, macOS and Windows, whose linkers keep much code that nothing calls.
 const CROSS_EDITOR: [&str; 4] = [
@@ -150,15 +153,17 @@ fn run(
     platform: &Platform,
 ) -> Result<PathBuf> {
     cargo.args(["--locked", "--package", "footfall_godot"]);
-    if flavour == Flavour::Editor {
-        cargo.args(["--features", "editor"]);
-    }
     let profile = match flavour {
         _ if options.debug => "dev",
         Flavour::Game if options.shipped => "shipped",
         _ => "release",
     };
     cargo.args(["--profile", profile]);
+    match flavour {
+        Flavour::Editor => cargo.args(["--features", "editor"]),
+        Flavour::Game if profile == "shipped" => &mut cargo,
+        Flavour::Game => cargo.args(["--features", CLASS_DOCS]),
+    };
     let workspace = paths::workspace();
     let argument = match platform.system() {
         "windows" if options.cross => Some(workspace.join(EXPORTS).display().to_string()),

@@ -5,7 +5,9 @@
 
 use footfall_model::ImuModel;
 use footfall_model::imu_model::{BODY_COUNT, HEIGHT, WAY};
+use nalgebra::DMatrix;
 use std::collections::BTreeMap;
+use std::ops::Range;
 
 /// Share of the way to the mean of others.
 const SHARE: f32 = 0.7;
@@ -25,112 +27,122 @@ const FARTHEST: f32 = 14.0;
 /// Numbers of the body that have a manner: joints and height. The way, the turn, contacts and headings are the segment's own.
 const MANNER: usize = HEIGHT + 1;
 
+/// Segments whose means are found at once: the bodies of a phase are read once for all of them.
+const BLOCK: usize = 64;
+
 /// Returns the rows of the bodies of a model, each person drawn to the others.
 pub(crate) fn drawn_to_others(model: &ImuModel) -> Vec<f32> {
-    let segments = resampled(model);
-    let mut of_phase: Vec<Vec<usize>> = vec![Vec::new(); model.phases.len()];
-    for (n, segment) in model.segments.iter().enumerate() {
-        of_phase[usize::from(segment.phase)].push(n);
+    let mut of_phase: Vec<Vec<Resampled>> = Vec::new();
+    of_phase.resize_with(model.phases.len(), Vec::new);
+    for (segment, resampled) in model.segments.iter().zip(resampled(model)) {
+        of_phase[usize::from(segment.phase)].push(resampled);
     }
     let mut body = model.body.clone();
-    let mut rows = body.chunks_exact_mut(BODY_COUNT);
-    for (own, segment) in segments.iter().zip(&model.segments) {
-        let alike = &of_phase[usize::from(segment.phase)];
-        let alike = alike
-            .iter()
-            .map(|n| (model.segments[*n].subject, &segments[*n]));
-        let mean = mean_of_people(own, alike);
-        let frames = usize::from(segment.frames);
-        for (frame, row) in rows.by_ref().take(frames).enumerate() {
-            let place = Place::of((frame as f32 + 0.5) / frames as f32, TIMES);
-            for (n, value) in row[..MANNER].iter_mut().enumerate() {
-                *value += SHARE * (place.between(&mean, BODY_COUNT, n) - *value);
+    for segments in &of_phase {
+        let bodies = DMatrix::from_fn(TIMES * MANNER, segments.len(), |n, segment| {
+            segments[segment].body[n]
+        });
+        for block in segments.chunks(BLOCK) {
+            let mut shares = DMatrix::zeros(segments.len(), block.len());
+            for (own, mut shares) in block.iter().zip(shares.column_iter_mut()) {
+                own.shares_in(segments, shares.as_mut_slice());
+            }
+            let means = &bodies * shares;
+            for (segment, mean) in block.iter().zip(means.column_iter()) {
+                let rows =
+                    &mut body[segment.rows.start * BODY_COUNT..segment.rows.end * BODY_COUNT];
+                draw(rows, mean.as_slice());
             }
         }
     }
     body
 }
 
+/// Draws the rows of a segment to a mean at [`TIMES`] times.
+fn draw(rows: &mut [f32], mean: &[f32]) {
+    let frames = rows.len() / BODY_COUNT;
+    for (frame, row) in rows.chunks_exact_mut(BODY_COUNT).enumerate() {
+        let place = Place::of((frame as f32 + 0.5) / frames as f32, TIMES);
+        for (n, value) in row[..MANNER].iter_mut().enumerate() {
+            *value += SHARE * (place.between(mean, MANNER, n) - *value);
+        }
+    }
+}
+
 /// A segment at [`TIMES`] times.
 struct Resampled {
+    /// Rows of the segment in its model.
+    rows: Range<usize>,
+    subject: u16,
     /// Sensor numbers over their deviations.
     sensor: Vec<f32>,
+    /// The first [`MANNER`] numbers of the body.
     body: Vec<f32>,
     /// Mean speed ahead, m/s.
     speed_mps: f32,
 }
 
-fn resampled(model: &ImuModel) -> Vec<Resampled> {
+fn resampled(model: &ImuModel) -> impl Iterator<Item = Resampled> {
     let width = model.sensor_width();
     let mut first = 0;
-    let segments = model.segments.iter().map(|segment| {
-        let frames = usize::from(segment.frames);
-        let body = &model.body[first * BODY_COUNT..(first + frames) * BODY_COUNT];
-        let sensor = &model.sensor[first * width..(first + frames) * width];
-        first += frames;
+    model.segments.iter().map(move |segment| {
+        let rows = first..first + usize::from(segment.frames);
+        first = rows.end;
+        let body = &model.body[rows.start * BODY_COUNT..rows.end * BODY_COUNT];
+        let sensor = &model.sensor[rows.start * width..rows.end * width];
         let ahead: f32 = body.chunks_exact(BODY_COUNT).map(|row| row[WAY + 1]).sum();
-        let mut sensor = at_times(sensor, width, frames);
+        let mut sensor = at_times(sensor, width, width);
         for row in sensor.chunks_exact_mut(width) {
             for (value, deviation) in row.iter_mut().zip(&model.deviations) {
                 *value /= deviation;
             }
         }
         Resampled {
+            subject: segment.subject,
             sensor,
-            body: at_times(body, BODY_COUNT, frames),
-            speed_mps: ahead / frames as f32 * model.frame_rate_hz as f32,
+            body: at_times(body, BODY_COUNT, MANNER),
+            speed_mps: ahead / rows.len() as f32 * model.frame_rate_hz as f32,
+            rows,
         }
-    });
-    segments.collect()
+    })
 }
 
-/// Rows of this width at [`TIMES`] times.
-fn at_times(rows: &[f32], width: usize, frames: usize) -> Vec<f32> {
-    let places = (0..TIMES).map(|time| Place::of((time as f32 + 0.5) / TIMES as f32, frames));
+/// The first numbers of rows of this width, at [`TIMES`] times.
+fn at_times(rows: &[f32], width: usize, first: usize) -> Vec<f32> {
+    let count = rows.len() / width;
+    let places = (0..TIMES).map(|time| Place::of((time as f32 + 0.5) / TIMES as f32, count));
     places
-        .flat_map(|place| (0..width).map(move |n| place.between(rows, width, n)))
+        .flat_map(|place| (0..first).map(move |n| place.between(rows, width, n)))
         .collect()
 }
 
-/// Mean body at [`TIMES`] times of the people of these segments, each by the segments that resemble one.
-fn mean_of_people<'a>(
-    own: &Resampled,
-    segments: impl Iterator<Item = (u16, &'a Resampled)>,
-) -> Vec<f32> {
-    /// The largest weight of a person's segments, the sum of all, and that of the weighted bodies.
-    struct Person {
-        most: f32,
-        sum: f32,
-        bodies: Vec<f32>,
-    }
-    let mut people: BTreeMap<u16, Person> = BTreeMap::new();
-    for (subject, other) in segments {
-        let Some(weight) = own.likeness(other) else {
-            continue;
-        };
-        let person = people.entry(subject).or_insert_with(|| Person {
-            most: 0.0,
-            sum: 0.0,
-            bodies: vec![0.0; own.body.len()],
-        });
-        person.most = person.most.max(weight);
-        person.sum += weight;
-        for (sum, value) in person.bodies.iter_mut().zip(&other.body) {
-            *sum += weight * value;
-        }
-    }
-    let all: f32 = people.values().map(|person| person.most).sum();
-    let mut mean = vec![0.0; own.body.len()];
-    for person in people.values() {
-        let weight = person.most / (all * person.sum);
-        for (mean, value) in mean.iter_mut().zip(&person.bodies) {
-            *mean += weight * value;
-        }
-    }
-    mean
-}
-
 impl Resampled {
+    /// Shares of all segments of a phase in the mean of their people, each by the segments that resemble this one: zero for those that do not count.
+    fn shares_in(&self, segments: &[Self], shares: &mut [f32]) {
+        /// The largest weight of a person's segments, and the sum of all.
+        #[derive(Default)]
+        struct Person {
+            most: f32,
+            sum: f32,
+        }
+        let mut people: BTreeMap<u16, Person> = BTreeMap::new();
+        for (share, other) in shares.iter_mut().zip(segments) {
+            let Some(weight) = self.likeness(other) else {
+                continue;
+            };
+            let person = people.entry(other.subject).or_default();
+            person.most = person.most.max(weight);
+            person.sum += weight;
+            *share = weight;
+        }
+        let all: f32 = people.values().map(|person| person.most).sum();
+        for (share, other) in shares.iter_mut().zip(segments) {
+            if let Some(person) = people.get(&other.subject) {
+                *share *= person.most / (all * person.sum);
+            }
+        }
+    }
+
     /// Weight of another segment beside this one; `None` where it does not count.
     fn likeness(&self, other: &Self) -> Option<f32> {
         let faster = (self.speed_mps - other.speed_mps) / ALIKE_SPEED_MPS;
@@ -250,5 +262,57 @@ mod tests {
             assert!((with(other) - drawn).abs() < 1e-3, "{}", with(other));
         }
         assert!(with((2, 0.5, 1.3, 9.0)) > drawn + 1.0);
+    }
+
+    #[test]
+    fn blocks_of_segments_are_drawn_as_each_by_itself() {
+        // More than a block in each of two phases that take turns, of people with one to many segments.
+        let specs: Vec<SegmentSpec> = (0..3 * BLOCK)
+            .map(|n| {
+                let wave = |step: f32| (step * n as f32).sin();
+                (
+                    n as u16 % 7 % 3,
+                    2.0 * wave(0.7),
+                    1.2 + wave(1.3),
+                    wave(2.1),
+                )
+            })
+            .collect();
+        let mut model = model(&specs);
+        model.phases.push(model.phases[0]);
+        for (n, segment) in model.segments.iter_mut().enumerate() {
+            segment.phase = n as u16 % 2;
+        }
+        let body = drawn_to_others(&model);
+        for (n, (_, measured, speed, own)) in specs.iter().enumerate() {
+            // Sums of people: weights, and weighted bodies. Sensors and bodies are constant over a segment.
+            let mut people = [(0.0_f32, 0.0_f32, 0.0_f32); 3];
+            for (other, (subject, felt, pace, body)) in specs.iter().enumerate() {
+                let squares = SENSOR_COUNT as f32 * (measured - felt).powi(2) / ALIKE;
+                let apart = squares + ((speed - pace) / ALIKE_SPEED_MPS).powi(2);
+                if other % 2 == n % 2 && apart < FARTHEST {
+                    let weight = (-0.5 * apart).exp();
+                    let (most, sum, bodies) = &mut people[usize::from(*subject)];
+                    *most = most.max(weight);
+                    *sum += weight;
+                    *bodies += weight * body;
+                }
+            }
+            let found = people.iter().filter(|(_, sum, _)| *sum > 0.0);
+            let all: f32 = found.clone().map(|(most, ..)| most).sum();
+            let mean: f32 = found
+                .map(|(most, sum, bodies)| most / all * bodies / sum)
+                .sum();
+            let expected = own + SHARE * (mean - own);
+            let row = &body[3 * n * BODY_COUNT..];
+            assert!(
+                (row[0] - expected).abs() < 1e-4,
+                "{} is not {expected}",
+                row[0]
+            );
+            assert!((row[HEIGHT] - expected).abs() < 1e-4);
+            // What is no manner stays.
+            assert!((row[WAY] - own).abs() < 1e-6);
+        }
     }
 }
