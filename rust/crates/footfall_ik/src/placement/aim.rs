@@ -103,26 +103,32 @@ impl Step<'_> {
             standing: self.standing.position.dot(up),
             bounds: self.bounds(length, search.may_shift),
         };
-        let best = self.search(scene, &ground, &search);
+        let straight = Search {
+            aside_m: [0.0; 2],
+            ..search
+        };
+        let best = self.search(scene, &ground, &straight, None);
+        // What is found on the way rules out most of what lies beside it before a ray is cast.
+        let best = self.search(scene, &ground, &search, best);
         let best = best.filter(|(cost, _)| *cost < ASKEW_COST).or_else(|| {
             let thorough = Search {
                 thorough: true,
                 ..search
             };
-            self.search(scene, &ground, &thorough)
+            self.search(scene, &ground, &thorough, None)
         });
         best.map(|(_, aim)| aim)
     }
 
-    /// The best place on the ground along the step, and its cost.
+    /// The best place on the ground along the step and its cost, where it is better than `best`.
     fn search<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
         ground: &StepGround,
         search: &Search,
+        mut best: Option<(f32, Aim)>,
     ) -> Option<(f32, Aim)> {
         let (least, most) = ground.bounds;
-        let mut best: Option<(f32, Aim)> = None;
         let trials = (least.max(most) / TRIAL_M) as usize;
         for trial in (0..=trials).step_by(search.spread()) {
             let shift = TRIAL_M * trial as f32;

@@ -144,7 +144,10 @@ impl Search {
         most: f32,
     ) -> Option<(Lie, f32)> {
         let here = self.weigh(terrain, flat, foot, most)?;
-        let rests = here.0.rim_rests() && (!self.thorough || here.0.borne_gap <= FLAT_M);
+        // Nothing is known of the rim of a sole that was ruled out before: it may still lie well beside.
+        let rests = here.1.is_finite()
+            && here.0.rim_rests()
+            && (!self.thorough || here.0.borne_gap <= FLAT_M);
         let mut best = Some(here).filter(|(_, cost)| *cost < most);
         if !self.may_shift || rests {
             return best;
@@ -172,8 +175,8 @@ impl Search {
         best
     }
 
-    /// Weighs this very place: how a sole lies there and the cost of that. The cost is infinite where it reaches `most` before the rim is
-    /// looked at.
+    /// Weighs this very place: how a sole lies there and the cost of that. The cost is infinite where it reaches `most` before the whole
+    /// rim is looked at.
     fn weigh(
         &self,
         terrain: &mut impl Terrain,
@@ -194,11 +197,19 @@ impl Search {
         if cost >= most {
             return Some((lie, f32::INFINITY));
         }
-        self.widen(terrain, &mut lie, foot);
-        cost = if lie.rim_cut > FLAT_M {
-            ASKEW_COST + lie.gap.max(lie.rim_cut)
+        let with_rim = |lie: &Lie| {
+            if lie.rim_cut > FLAT_M {
+                ASKEW_COST + lie.gap.max(lie.rim_cut)
+            } else {
+                cost + RIM_COST * lie.rim_hangs as f32
+            }
+        };
+        // Further points of the rim make a sole that lies flat no cheaper.
+        let too_dear = |lie: &Lie| cost < ASKEW_COST && with_rim(lie) >= most;
+        cost = if self.widen(terrain, &mut lie, foot, too_dear) {
+            with_rim(&lie)
         } else {
-            cost + RIM_COST * lie.rim_hangs as f32
+            f32::INFINITY
         };
         Some((lie, cost))
     }

@@ -43,8 +43,15 @@ impl Lie {
 }
 
 impl Search {
-    /// Looks at the ground under the rim of a sole, and raises it onto what would cut into it.
-    pub(super) fn widen(&self, terrain: &mut impl Terrain, lie: &mut Lie, foot: &RockerFoot) {
+    /// Looks at the ground under the rim of a sole, and raises it onto what would cut into it. Returns false, with the sole where it was, as soon
+    /// as it is `too_dear`.
+    pub(super) fn widen(
+        &self,
+        terrain: &mut impl Terrain,
+        lie: &mut Lie,
+        foot: &RockerFoot,
+        too_dear: impl Fn(&Lie) -> bool,
+    ) -> bool {
         let mut raise = 0.0_f32;
         for point in foot.sole_rim().as_flattened() {
             let ground = self.cast(terrain, lie.sole.point(*point));
@@ -56,12 +63,16 @@ impl Search {
             if height < WALL_M {
                 raise = raise.max(height);
             }
+            if too_dear(lie) {
+                return false;
+            }
         }
         if raise > FLAT_M {
             lie.sole.position += lie.sole.up() * raise;
             lie.gap += raise;
             lie.borne_gap += raise;
         }
+        true
     }
 
     /// Returns true when higher ground stands close behind the heel or before the toes of a sole.
