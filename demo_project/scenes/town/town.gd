@@ -51,9 +51,9 @@ func _ready() -> void:
 	_bring_people()
 
 
-## The server takes the map over with the next frames of physics.
+## Nobody finds a way before the map is there.
 func _bring_people() -> void:
-	for frame: int in 2:
+	while not %Ways.is_on_map():
 		await get_tree().physics_frame
 	_people.come(PEOPLE, RUNNERS)
 	if not OS.get_cmdline_user_args().is_empty():

@@ -166,7 +166,6 @@ fn find_strength(banded: &mut Banded, slope: f64, target: f64) -> Option<(f64, S
     };
     let mut strength = 0.0;
     let mut solution = plain;
-    let mut best = (strength, plain);
     for _ in 0..200 {
         let excess = strength - slope * (solution.variance - target);
         if excess >= 0.0 {
@@ -174,7 +173,6 @@ fn find_strength(banded: &mut Banded, slope: f64, target: f64) -> Option<(f64, S
         } else {
             low = strength;
         }
-        best = (strength, solution);
         let tolerance = 1e-14 * (strength.abs() + slope * target);
         if excess.abs() <= tolerance || high - low <= 1e-15 * (high.abs() + low.abs()) {
             break;
@@ -196,10 +194,12 @@ fn find_strength(banded: &mut Banded, slope: f64, target: f64) -> Option<(f64, S
                 break None;
             }
         };
-        let Some(found) = found else { break };
+        let Some(found) = found else {
+            // What could not be solved left something else behind.
+            return banded.solve(strength).map(|solution| (strength, solution));
+        };
         strength = next;
         solution = found;
     }
-    // The last call may have left something else behind.
-    banded.solve(best.0).map(|solution| (best.0, solution))
+    Some((strength, solution))
 }

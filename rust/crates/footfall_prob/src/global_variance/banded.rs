@@ -15,11 +15,14 @@ pub(super) struct Banded {
     fixed: Vec<f64>,
     /// The free frames of the last solution.
     pub(super) trajectory: Vec<f64>,
-    /// (R + κ I)⁻¹ applied to the ones.
-    ones: Vec<f64>,
-    scratch: Vec<f64>,
-    factors: Vec<[f64; 3]>,
+    /// (R + κ I)⁻¹ applied to r and to ones.
+    both: Vec<[f64; 2]>,
+    scratch: Vec<[f64; 1]>,
+    factors: Vec<Factor>,
 }
+
+/// Inverse of a pivot of L D Lᵀ, and the entries of L below it at lags stride and 2 stride.
+type Factor = [f64; 3];
 
 /// Solution for one value of κ.
 #[derive(Clone, Copy)]
@@ -85,8 +88,8 @@ impl Banded {
             n_frames,
             fixed,
             trajectory: vec![0.0; n_free],
-            ones: vec![0.0; n_free],
-            scratch: vec![0.0; n_free],
+            both: vec![[0.0; 2]; n_free],
+            scratch: vec![[0.0]; n_free],
             factors: vec![[0.0; 3]; n_free],
         }
     }
@@ -102,13 +105,25 @@ impl Banded {
     /// J c = c - c̄, so (R + κ I) c = r + κ c̄ 1: two banded solutions x = (..)⁻¹ r and u = (..)⁻¹ 1
     /// give c = x + κ c̄ u, and its mean gives c̄.
     pub(super) fn solve(&mut self, strength: f64) -> Option<Solution> {
-        let n_negative = self.factorise(strength)?;
+        match self.stride {
+            1 => self.solve_strided::<1>(strength),
+            _ => self.solve_strided::<2>(strength),
+        }
+    }
+
+    /// As [`solve`](Self::solve), with the windows' stride.
+    fn solve_strided<const STRIDE: usize>(&mut self, strength: f64) -> Option<Solution> {
+        let n_negative = self.factorise::<STRIDE>(strength)?;
         let n_frames = self.n_frames as f64;
-        self.trajectory.copy_from_slice(&self.rhs);
-        substitute(&self.factors, self.stride, &mut self.trajectory);
-        self.ones.fill(1.0);
-        substitute(&self.factors, self.stride, &mut self.ones);
-        let denominator = n_frames - strength * self.ones.iter().sum::<f64>();
+        for (both, rhs) in self.both.iter_mut().zip(&self.rhs) {
+            *both = [*rhs, 1.0];
+        }
+        substitute::<STRIDE, 2>(&self.factors, &mut self.both);
+        let [total, ones] = self
+            .both
+            .iter()
+            .fold([0.0; 2], |[total, ones], [x, u]| [total + x, ones + u]);
+        let denominator = n_frames - strength * ones;
         // det(R + κ J) = det(R + κ I) denominator / T, and for κ < 0 the rank-one term can lift
         // one negative eigenvalue, no more.
         let is_positive_definite =
@@ -116,10 +131,9 @@ impl Banded {
         if !is_positive_definite {
             return None;
         }
-        let total = self.fixed.iter().sum::<f64>() + self.trajectory.iter().sum::<f64>();
-        let mean = total / denominator;
-        for (c, u) in self.trajectory.iter_mut().zip(&self.ones) {
-            *c += strength * mean * u;
+        let mean = (self.fixed.iter().sum::<f64>() + total) / denominator;
+        for (c, [x, u]) in self.trajectory.iter_mut().zip(&self.both) {
+            *c = x + strength * mean * u;
         }
         let square = |c: &f64| (c - mean) * (c - mean);
         let variance = (self.fixed.iter().map(square).sum::<f64>()
@@ -127,16 +141,16 @@ impl Banded {
             / n_frames;
         // dc/dκ = -(R + κ J)⁻¹ J c, by the same two steps.
         for (z, c) in self.scratch.iter_mut().zip(&self.trajectory) {
-            *z = c - mean;
+            *z = [c - mean];
         }
-        substitute(&self.factors, self.stride, &mut self.scratch);
-        let change = strength * self.scratch.iter().sum::<f64>() / denominator;
+        substitute::<STRIDE, 1>(&self.factors, &mut self.scratch);
+        let change = strength * self.scratch.iter().map(|[z]| z).sum::<f64>() / denominator;
         let product: f64 = self
             .scratch
             .iter()
-            .zip(&self.ones)
+            .zip(&self.both)
             .zip(&self.trajectory)
-            .map(|((z, u), c)| (z + change * u) * (c - mean))
+            .map(|(([z], [_, u]), c)| (z + change * u) * (c - mean))
             .sum();
         let variance_slope = -2.0 * product / n_frames;
         variance_slope.is_finite().then_some(Solution {
@@ -147,48 +161,66 @@ impl Banded {
     }
 
     /// L D Lᵀ of R + κ I; the number of negative pivots, `None` when one vanishes.
-    fn factorise(&mut self, strength: f64) -> Option<usize> {
-        let stride = self.stride;
+    fn factorise<const STRIDE: usize>(&mut self, strength: f64) -> Option<usize> {
+        let n_frames = self.diagonal.len();
         let mut n_negative = 0;
-        for t in 0..self.diagonal.len() {
-            let mut pivot = self.diagonal[t] + strength;
-            let mut near = self.near[t];
-            if t >= stride {
-                let [inverse, near_before, far_before] = self.factors[t - stride];
-                // Entries of L times pivot: near_before / inverse is the unscaled coupling.
-                pivot -= near_before * near_before / inverse;
-                near -= near_before * far_before / inverse;
+        // To subtract, by chain, from the next pivot, from the one after, and from the next entry at lag stride.
+        let mut carries = [[0.0; 3]; STRIDE];
+        for first in (0..n_frames).step_by(STRIDE) {
+            for (chain, carry) in carries.iter_mut().enumerate() {
+                let t = first + chain;
+                if t == n_frames {
+                    break;
+                }
+                let pivot = self.diagonal[t] + strength - carry[0];
+                let inverse = pivot.recip();
+                if !inverse.is_finite() || !pivot.is_finite() {
+                    return None;
+                }
+                n_negative += usize::from(pivot < 0.0);
+                let (near, far) = (self.near[t] - carry[2], self.far[t]);
+                let [near_of_l, far_of_l] = [near * inverse, far * inverse];
+                self.factors[t] = [inverse, near_of_l, far_of_l];
+                *carry = [near * near_of_l + carry[1], far * far_of_l, near * far_of_l];
             }
-            if t >= 2 * stride {
-                let [inverse, _, far_before] = self.factors[t - 2 * stride];
-                pivot -= far_before * far_before / inverse;
-            }
-            let inverse = pivot.recip();
-            if !inverse.is_finite() || !pivot.is_finite() {
-                return None;
-            }
-            n_negative += usize::from(pivot < 0.0);
-            self.factors[t] = [inverse, near * inverse, self.far[t] * inverse];
         }
         Some(n_negative)
     }
 }
 
-/// Solves L D Lᵀ x = b in place.
-fn substitute(factors: &[[f64; 3]], stride: usize, x: &mut [f64]) {
-    for t in 0..x.len() {
-        for lag in 1..3 {
-            if let Some(before) = t.checked_sub(lag * stride) {
-                x[t] -= factors[before][lag] * x[before];
+/// Solves L D Lᵀ x = b in place, for N right-hand sides side by side.
+fn substitute<const STRIDE: usize, const N: usize>(factors: &[Factor], x: &mut [[f64; N]]) {
+    let firsts = (0..x.len()).step_by(STRIDE);
+    // To subtract, by chain, from the next entry and from the one after.
+    let mut carries = [[[0.0; N]; 2]; STRIDE];
+    for first in firsts.clone() {
+        for (chain, [next, later]) in carries.iter_mut().enumerate() {
+            let (Some(x), Some([_, near, far])) =
+                (x.get_mut(first + chain), factors.get(first + chain))
+            else {
+                break;
+            };
+            for n in 0..N {
+                x[n] -= next[n];
+                next[n] = near * x[n] + later[n];
+                later[n] = far * x[n];
             }
         }
     }
-    for t in (0..x.len()).rev() {
-        x[t] *= factors[t][0];
-        for lag in 1..3 {
-            if let Some(after) = x.get(t + lag * stride) {
-                x[t] -= factors[t][lag] * after;
+    // The entries of the next frame and of the one after.
+    let mut afters = [[[0.0; N]; 2]; STRIDE];
+    for first in firsts.rev() {
+        for (chain, [next, later]) in afters.iter_mut().enumerate() {
+            let (Some(x), Some([inverse, near, far])) =
+                (x.get_mut(first + chain), factors.get(first + chain))
+            else {
+                break;
+            };
+            for n in 0..N {
+                x[n] = x[n] * inverse - near * next[n] - far * later[n];
             }
+            *later = *next;
+            *next = *x;
         }
     }
 }
