@@ -237,6 +237,32 @@ fn whoever_else_is_about_is_walked_around() {
 }
 
 #[test]
+fn who_awaits_a_route_stands_until_it_is_known() {
+    let mut crowd = crowd(Routing::Scripted);
+    crowd.add((0..2).map(|n| (Vec3::new(3.0 * n as f32, 0.0, 0.0), 0.0)));
+    walk(&mut crowd, 1.0, |_| {});
+    let to = Vec3::new(0.0, 1.5, 20.0);
+    let starts = places(&crowd);
+    for agent in crowd.agents_mut() {
+        agent.await_route(to);
+    }
+    walk(&mut crowd, 5.0, |_| {});
+    for (agent, start) in crowd.agents().iter().zip(starts) {
+        let off = agent.place.distance(start);
+        assert!(off < 1.5, "{off} m from where it was");
+        assert_eq!(agent.straight_way(), None, "its ground is unknown");
+        assert_eq!(agent.awaited(), Some(to));
+    }
+    crowd.agents_mut()[0].go_along([Vec2::new(0.0, 12.0)].into_iter());
+    crowd.agents_mut()[1].turn(0.0);
+    walk(&mut crowd, 2.0, |_| {});
+    for agent in crowd.agents() {
+        assert_eq!(agent.awaited(), None, "it has another goal");
+        assert!(agent.velocity().length() > 0.5, "it walks");
+    }
+}
+
+#[test]
 fn whoever_arrives_slows_down_and_stops_at_the_goal() {
     let mut crowd = crowd(Routing::Scripted);
     crowd.add((0..6).map(|n| (Vec3::new(3.0 * n as f32, 0.0, 0.0), 0.0)));

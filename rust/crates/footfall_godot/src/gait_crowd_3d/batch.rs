@@ -123,7 +123,8 @@ impl GaitCrowd3D {
     /// `behaviour` scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of
     /// `set_speeds()`.
     ///
-    /// Returns `true` if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet.
+    /// Returns `true` if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet: it
+    /// returns `false`, and the walkers stand until there is one, and go.
     #[func]
     #[expect(clippy::needless_pass_by_value, reason = "Godot calls by value")]
     fn set_destinations(
@@ -132,14 +133,18 @@ impl GaitCrowd3D {
         #[opt(default = &PackedInt32Array::new())] agents: PackedInt32Array,
     ) -> bool {
         let host = self.to_gd().upcast::<Node3D>();
-        let Some(mut navigation) = Navigation::of(&host, self.navigation_layers) else {
-            return false;
-        };
+        let mut navigation = Navigation::of(&host, self.navigation_layers);
         self.sends = true;
         let mut all = true;
         self.set_each(destinations.as_slice(), &agents, |agent, place| {
-            if place.is_finite() {
+            if !place.is_finite() {
+                return;
+            }
+            if let Some(navigation) = &mut navigation {
                 all &= navigation.send(agent, *place);
+            } else {
+                agent.await_route(convert::vec3(*place));
+                all = false;
             }
         });
         all

@@ -35,13 +35,18 @@ pub(super) struct Navigation {
 }
 
 impl Navigation {
-    /// The map of the world that the crowd is in, once there is anything in it.
+    /// The map of the world that the crowd is in, once there is any ground on it: a map's first iteration may be empty.
     pub(super) fn of(crowd: &Gd<Node3D>, layers: u32) -> Option<Self> {
         let map = crowd.get_world_3d()?.get_navigation_map().to_variant();
         let mut server = Engine::singleton().get_singleton("NavigationServer3D")?;
         let found = server.call("map_get_iteration_id", core::slice::from_ref(&map));
+        if found.try_to::<i64>().unwrap_or(0) <= 0 {
+            return None;
+        }
         let world_from_crowd = crowd.get_global_transform();
-        (found.try_to::<i64>().unwrap_or(0) > 0).then_some(Self {
+        let asked = [map.clone(), world_from_crowd.origin.to_variant()];
+        let ground = server.call("map_get_closest_point_owner", &asked);
+        ground.try_to::<Rid>().ok()?.is_valid().then(|| Self {
             server,
             map,
             layers,
@@ -75,19 +80,30 @@ impl Navigation {
         true
     }
 
-    /// Looks at the ground ahead of those who are on their way, beginning at this row; the row to begin at next time.
+    /// Sends those off who await a route, and looks at the ground ahead of those who are on their way, beginning at this row; the row to begin at next time.
     pub(super) fn keep(&mut self, walkers: &mut Crowd, from: usize) -> usize {
         let rows = walkers.agents().len();
         let mut left = MOST_KEPT.max(rows / MOST_FRAMES);
         for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
             let agent = &mut walkers.agents_mut()[row];
             agent.follow_route();
-            left -= usize::from(self.look(agent));
+            left -= usize::from(self.set_off(agent) || self.look(agent));
             if left == 0 {
                 return row + 1;
             }
         }
         0
+    }
+
+    /// Sends a walker to the place to which it awaits a route; whether it awaits one. It stays where it is if there is none.
+    fn set_off(&mut self, agent: &mut Agent) -> bool {
+        let Some(to) = agent.awaited() else {
+            return false;
+        };
+        if !self.send(agent, convert::vector3(to)) {
+            agent.go_to(agent.place.xz());
+        }
+        true
     }
 
     /// Looks at the ground ahead of a walker; whether it is on its way.

@@ -1,7 +1,7 @@
 //! Goals of a walker: a turn, a place, or a route to one.
 
 use super::agent::Agent;
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
 
 /// Distance at which a walker has arrived at a place, metres.
@@ -27,6 +27,8 @@ pub enum Goal {
 pub(super) enum Guidance {
     /// The ground is unknown.
     None,
+    /// The game has no ground yet to find a route on; its destination, in the crowd's space.
+    Awaited(Vec3),
     /// The game found the route around obstacles, and has not queried the ground here.
     Route,
     /// The game has queried the ground here.
@@ -68,6 +70,20 @@ impl Agent {
         }
     }
 
+    /// Stays where it is until the game knows the ground, and with it the way to this place of the crowd's space.
+    pub fn await_route(&mut self, to: Vec3) {
+        self.go_to(self.level());
+        self.guidance = Guidance::Awaited(to);
+    }
+
+    /// Returns the place to which it awaits a route.
+    pub fn awaited(&self) -> Option<Vec3> {
+        match self.guidance {
+            Guidance::Awaited(to) => Some(to),
+            Guidance::None | Guidance::Route | Guidance::Ground(_) => None,
+        }
+    }
+
     fn give_up(&mut self) {
         self.route.clear();
         self.guidance = Guidance::None;
@@ -75,8 +91,9 @@ impl Agent {
 
     /// The direction of its goal as a unit vector, where the game found its route and it has not arrived: a walker that avoids others, or turns in an arc, may leave that ground.
     pub fn straight_way(&self) -> Option<Vec2> {
+        let on_route = matches!(self.guidance, Guidance::Route | Guidance::Ground(_));
         match self.goal {
-            Goal::Place(place) if self.guidance != Guidance::None && self.is_on_its_way() => {
+            Goal::Place(place) if on_route && self.is_on_its_way() => {
                 (place - self.level()).try_normalize()
             }
             Goal::Place(_) | Goal::Turn(_) => None,
@@ -100,7 +117,9 @@ impl Agent {
             Guidance::Ground(ground) if ground.at.distance(self.level()) < KNOWN_M => {
                 (ground.way.unwrap_or(straight), ground.room_rad)
             }
-            Guidance::None | Guidance::Route | Guidance::Ground(_) => (straight, WIDE),
+            Guidance::None | Guidance::Awaited(_) | Guidance::Route | Guidance::Ground(_) => {
+                (straight, WIDE)
+            }
         }
     }
 
