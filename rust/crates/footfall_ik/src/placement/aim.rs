@@ -16,6 +16,8 @@ const MORE_SHARE: f32 = 0.3;
 const MOST_MORE_M: f32 = 0.16;
 /// Distance between candidate places, metres.
 const TRIAL_M: f32 = 0.01;
+/// The same where places beside the way are tried, too, as a multiple: there are many.
+const SPREAD: usize = 2;
 /// Least lateral distance of footprints when a foothold avoids an edge, metres.
 const LEAST_BASE_M: f32 = 0.06;
 /// Height differences of a step without effort, and those out of reach, in leg lengths; and the cost of a metre of effort.
@@ -107,30 +109,31 @@ impl Step<'_> {
             aside_m: [0.0; 2],
             ..search
         };
-        let best = self.search(scene, &ground, &straight, None);
+        let best = self.search(scene, &ground, &straight, 1, None);
         // What is found on the way rules out most of what lies beside it before a ray is cast.
-        let best = self.search(scene, &ground, &search, best);
+        let best = self.search(scene, &ground, &search, SPREAD, best);
         let best = best.filter(|(cost, _)| *cost < ASKEW_COST).or_else(|| {
             let thorough = Search {
                 thorough: true,
                 ..search
             };
-            self.search(scene, &ground, &thorough, None)
+            self.search(scene, &ground, &thorough, SPREAD, None)
         });
         best.map(|(_, aim)| aim)
     }
 
-    /// The best place on the ground along the step and its cost, where it is better than `best`.
+    /// The best place on the ground along the step and its cost, where it is better than `best`. Places are this multiple of the smallest distance apart.
     fn search<T: Terrain>(
         &self,
         scene: &mut Scene<'_, T>,
         ground: &StepGround,
         search: &Search,
+        spread: usize,
         mut best: Option<(f32, Aim)>,
     ) -> Option<(f32, Aim)> {
         let (least, most) = ground.bounds;
         let trials = (least.max(most) / TRIAL_M) as usize;
-        for trial in (0..=trials).step_by(search.spread()) {
+        for trial in (0..=trials).step_by(spread) {
             let shift = TRIAL_M * trial as f32;
             // No farther one is better.
             if best.is_some_and(|(cost, _)| cost <= SHIFT_COST * shift) {

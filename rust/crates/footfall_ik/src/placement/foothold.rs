@@ -79,19 +79,14 @@ pub(crate) struct Search {
     /// Largest shifts to the left and to the right, metres.
     pub(crate) aside_m: [f32; 2],
     /// True if it also does so with an edge under its middle. Most edges lie across the path, where a lateral shift is useless. Candidates are then
-    /// [farther apart](Self::spread): thousands of rays in one frame would cost too much.
+    /// farther apart: thousands of rays in one frame would cost too much.
     pub(crate) thorough: bool,
 }
 
-/// Distance between the places of a thorough search, as a multiple of that of another one.
+/// Distance between the places to the side of a thorough search, as a multiple of that of another one.
 const THOROUGH_SPREAD: usize = 2;
 
 impl Search {
-    /// Distance between places that are tried, as a multiple of the smallest.
-    pub(crate) fn spread(&self) -> usize {
-        if self.thorough { THOROUGH_SPREAD } else { 1 }
-    }
-
     /// The ground above or below a point.
     pub(crate) fn cast(&self, terrain: &mut impl Terrain, at: Vec3) -> Option<Ground> {
         let way = self.up * (self.above_m + self.below_m);
@@ -153,8 +148,9 @@ impl Search {
             return best;
         }
         let left = flat.rotation * Vec3::X;
+        let spread = if self.thorough { THOROUGH_SPREAD } else { 1 };
         let trials = (MOST_ASIDE_M / ASIDE_M) as usize;
-        for trial in (self.spread()..=trials).step_by(self.spread()) {
+        for trial in (spread..=trials).step_by(spread) {
             let aside = ASIDE_M * trial as f32;
             let way = ASIDE_COST * aside;
             for (aside, room) in [(aside, self.aside_m[0]), (-aside, self.aside_m[1])] {
