@@ -416,7 +416,7 @@ namespace Footfall
         public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
 
         /// <summary>Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For <see cref="Behaviour"/> scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
-        /// <remarks>Returns <c>true</c> if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet.</remarks>
+        /// <remarks>Returns <c>true</c> if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet: it returns <c>false</c>, and the walkers stand until there is one, and go.</remarks>
         public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
 
         /// <summary>Sets the requested speeds of walkers, in metres per second: one for each id in <c>agents</c>, or for all walkers in the order of <see cref="GetAgents"/>. Missing and non-finite speeds change nothing.</summary>
