@@ -14,7 +14,8 @@ func bake() -> void:
 
 ## Returns true once the server, which makes maps on a thread of its own, has this ground on its map: the map's first iteration may be empty.
 func is_on_map() -> bool:
-	return NavigationServer3D.map_get_closest_point_owner(get_world_3d().navigation_map, HERE) == get_rid()
+	var map := get_world_3d().navigation_map
+	return NavigationServer3D.map_get_iteration_id(map) > 0 and NavigationServer3D.map_get_closest_point_owner(map, HERE) == get_rid()
 
 
 func _keep_what_is_connected() -> void:

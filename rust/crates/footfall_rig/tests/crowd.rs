@@ -250,6 +250,7 @@ fn who_awaits_a_route_stands_until_it_is_known() {
     for (agent, start) in crowd.agents().iter().zip(starts) {
         let off = agent.place.distance(start);
         assert!(off < 1.5, "{off} m from where it was");
+        assert!(agent.velocity().length() < 0.05, "it stands");
         assert_eq!(agent.straight_way(), None, "its ground is unknown");
         assert_eq!(agent.awaited(), Some(to));
     }

@@ -72,7 +72,7 @@ impl Agent {
 
     /// Stays where it is until the game knows the ground, and with it the way to this place of the crowd's space.
     pub fn await_route(&mut self, to: Vec3) {
-        self.go_to(self.level());
+        self.turn(0.0);
         self.guidance = Guidance::Awaited(to);
     }
 
@@ -91,9 +91,8 @@ impl Agent {
 
     /// The direction of its goal as a unit vector, where the game found its route and it has not arrived: a walker that avoids others, or turns in an arc, may leave that ground.
     pub fn straight_way(&self) -> Option<Vec2> {
-        let on_route = matches!(self.guidance, Guidance::Route | Guidance::Ground(_));
         match self.goal {
-            Goal::Place(place) if on_route && self.is_on_its_way() => {
+            Goal::Place(place) if self.guidance != Guidance::None && self.is_on_its_way() => {
                 (place - self.level()).try_normalize()
             }
             Goal::Place(_) | Goal::Turn(_) => None,
