@@ -139,6 +139,7 @@ func test_walkers_find_their_way_over_the_navigation_map() -> void:
 		if absf(place.x) < 0.8:
 			widest[0] = maxf(widest[0], absf(place.z)))
 	check_below(crowd.get_positions()[0].distance_to(Vector3(6, 0, -4)), 1.5, "it arrives")
+	check(crowd.set_destinations([Vector3(6, 0, -4), Vector3(NAN, 0, 0)]), "there is a way")
 	check_below(widest[0], 1.6, "it goes through the door")
 
 	var wanderers := add_crowd(20, func(made: GaitCrowd3D) -> void:

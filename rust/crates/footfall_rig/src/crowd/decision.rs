@@ -21,13 +21,13 @@ const THERE_M: f32 = 0.5;
 impl Agent {
     /// Sets speed and turning for the next step. The walker slows down for its last goal if it `stops` there.
     pub(super) fn decide(&mut self, others: &[Passerby], stops: bool) {
-        let mut speed = if self.awaited().is_some() {
-            0.0
-        } else {
-            self.speed_mps
-        };
+        let mut speed = self.speed_mps;
         let turn = match self.goal {
             Goal::Turn(rate) => rate,
+            Goal::Awaited(_) => {
+                speed = 0.0;
+                0.0
+            }
             Goal::Place(place) => {
                 let far = place.distance(self.level());
                 let last = self.route.is_empty();

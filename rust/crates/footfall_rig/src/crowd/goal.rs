@@ -20,6 +20,8 @@ pub enum Goal {
     Turn(f32),
     /// A place, in the plane of the crowd: x and z of its space.
     Place(Vec2),
+    /// A place of the crowd's space to which the game has no route yet: the walker stands.
+    Awaited(Vec3),
 }
 
 /// Knowledge of the ground on which a walker's route lies.
@@ -27,8 +29,6 @@ pub enum Goal {
 pub(super) enum Guidance {
     /// The ground is unknown.
     None,
-    /// The game has no ground yet to find a route on; its destination, in the crowd's space.
-    Awaited(Vec3),
     /// The game found the route around obstacles, and has not queried the ground here.
     Route,
     /// The game has queried the ground here.
@@ -72,15 +72,15 @@ impl Agent {
 
     /// Stays where it is until the game knows the ground, and with it the way to this place of the crowd's space.
     pub fn await_route(&mut self, to: Vec3) {
-        self.turn(0.0);
-        self.guidance = Guidance::Awaited(to);
+        self.give_up();
+        self.goal = Goal::Awaited(to);
     }
 
     /// Returns the place to which it awaits a route.
     pub fn awaited(&self) -> Option<Vec3> {
-        match self.guidance {
-            Guidance::Awaited(to) => Some(to),
-            Guidance::None | Guidance::Route | Guidance::Ground(_) => None,
+        match self.goal {
+            Goal::Awaited(to) => Some(to),
+            Goal::Place(_) | Goal::Turn(_) => None,
         }
     }
 
@@ -95,7 +95,7 @@ impl Agent {
             Goal::Place(place) if self.guidance != Guidance::None && self.is_on_its_way() => {
                 (place - self.level()).try_normalize()
             }
-            Goal::Place(_) | Goal::Turn(_) => None,
+            Goal::Place(_) | Goal::Turn(_) | Goal::Awaited(_) => None,
         }
     }
 
@@ -116,9 +116,7 @@ impl Agent {
             Guidance::Ground(ground) if ground.at.distance(self.level()) < KNOWN_M => {
                 (ground.way.unwrap_or(straight), ground.room_rad)
             }
-            Guidance::None | Guidance::Awaited(_) | Guidance::Route | Guidance::Ground(_) => {
-                (straight, WIDE)
-            }
+            Guidance::None | Guidance::Route | Guidance::Ground(_) => (straight, WIDE),
         }
     }
 
@@ -126,7 +124,7 @@ impl Agent {
     pub fn is_on_its_way(&self) -> bool {
         match self.goal {
             Goal::Place(place) => !self.route.is_empty() || !self.is_at(place),
-            Goal::Turn(_) => false,
+            Goal::Turn(_) | Goal::Awaited(_) => false,
         }
     }
 

@@ -123,6 +123,8 @@ impl SavedAgent {
         let (target, turn_rate) = match agent.goal {
             Goal::Place(place) => (Some(place.to_array()), 0.0),
             Goal::Turn(rate) => (None, rate),
+            // A state keeps no destination without a route: it stands until it is sent again.
+            Goal::Awaited(_) => (Some(agent.level().to_array()), 0.0),
         };
         Self {
             seed: agent.seed,
