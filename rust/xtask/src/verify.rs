@@ -1,112 +1,127 @@
 //! `cargo verify`: everything that must hold before a change goes in, in the order in which it fails soonest.
 
-use crate::{
-    csharp, demo, engine_run, examples, export, godot, library, link, network, newcomer, open,
-    package, paths, process, skipped, tidy,
-};
+mod checks;
+
+use crate::{examples, network, newcomer, package, skipped, tidy};
 use anyhow::{Context as _, Result, bail};
-use std::path::Path;
+use std::thread;
 use std::time::Instant;
 
-/// Number of frames that the demo runs.
-const DEMO_FRAMES: &str = "300";
-
 /// One thing to check.
+#[derive(Clone, Copy)]
 struct Step {
     name: &'static str,
     check: fn() -> Result<()>,
 }
 
-const STEPS: [Step; 16] = [
-    Step {
-        name: "format",
-        check: format,
-    },
-    Step {
-        name: "tidy",
-        check: tidy::command,
-    },
-    Step {
-        name: "clippy",
-        check: clippy,
-    },
-    Step {
-        name: "tests",
-        check: tests,
-    },
-    Step {
-        name: "examples",
-        check: examples::check,
-    },
-    Step {
-        name: "package",
-        check: package::check,
-    },
-    Step {
-        name: "docs",
-        check: docs,
-    },
-    Step {
-        name: "library",
-        check: build_library,
-    },
-    Step {
-        name: "godot",
-        check: provision,
-    },
-    Step {
-        name: "godot-tests",
-        check: tests_in_godot,
-    },
-    Step {
-        name: "godot-play",
-        check: play_in_godot,
-    },
-    Step {
-        name: "godot-network",
-        check: network::check,
-    },
-    Step {
-        name: "godot-editor",
-        check: tests_in_the_editor,
-    },
-    Step {
-        name: "godot-demo",
-        check: demo_in_godot,
-    },
-    Step {
-        name: "export",
-        check: exported_demo,
-    },
-    Step {
-        name: "newcomer",
-        check: newcomer::check,
-    },
+const fn step(name: &'static str, check: fn() -> Result<()>) -> Step {
+    Step { name, check }
+}
+
+/// Steps that run one after another.
+type Lane = &'static [Step];
+
+/// Stages that run one after another; the lanes of a stage run side by side. Lanes of one stage must not write the same files.
+const STAGES: [&[Lane]; 2] = [
+    &[&[
+        step("format", checks::format),
+        step("tidy", tidy::command),
+        step("clippy", checks::clippy),
+        step("tests", checks::tests),
+        step("examples", examples::check),
+        step("library", checks::build_library),
+        step("godot", checks::provision),
+        // It measures frames, so nothing may run beside it.
+        step("godot-play", checks::play_in_godot),
+        // It replaces the library of the project that others play.
+        step("godot-editor", checks::tests_in_the_editor),
+    ]],
+    // The first two wait for most of their time: for frames, for networks, for ports.
+    &[
+        &[step("godot-tests", checks::tests_in_godot)],
+        &[
+            step("godot-network", network::check),
+            step("godot-demo", checks::demo_in_godot),
+            step("export", checks::exported_demo),
+            step("newcomer", newcomer::check),
+        ],
+        &[step("package", package::check), step("docs", checks::docs)],
+    ],
 ];
 
-/// Runs every step, or only those that are named, and stops at the first that fails.
+/// Runs every step, or only those that are named, and stops after the first stage in which one fails.
 ///
 /// # Errors
-/// The first failure, or a name that is no step's.
+/// Every failure of that stage, or a name that is no step's.
 pub(crate) fn command(only: &[String]) -> Result<()> {
-    let known = |name: &String| STEPS.iter().any(|step| step.name == name);
-    if let Some(unknown) = only.iter().find(|name| !known(name)) {
-        let names: Vec<&str> = STEPS.iter().map(|step| step.name).collect();
+    let names: Vec<&str> = STAGES
+        .iter()
+        .flat_map(|lanes| lanes.iter().copied().flatten())
+        .map(|step| step.name)
+        .collect();
+    if let Some(unknown) = only.iter().find(|name| !names.contains(&name.as_str())) {
         bail!(
             "there is no step `{unknown}`; the steps are {}",
             names.join(", ")
         );
     }
-    let wanted = |step: &&Step| only.is_empty() || only.iter().any(|name| name == step.name);
-    let steps: Vec<&Step> = STEPS.iter().filter(wanted).collect();
-    if steps.iter().any(|step| step.name == "tests") {
+    let wanted = |name: &str| only.is_empty() || only.iter().any(|one| one == name);
+    if wanted("tests") {
         skipped::check_promised_recordings()?;
     }
     skipped::begin()?;
     let begin = Instant::now();
     let mut times = Vec::new();
-    for (index, step) in steps.iter().enumerate() {
-        eprintln!("── {}/{} {}", index + 1, steps.len(), step.name);
+    for lanes in STAGES {
+        let lanes: Vec<Vec<Step>> = lanes
+            .iter()
+            .map(|lane| {
+                lane.iter()
+                    .copied()
+                    .filter(|step| wanted(step.name))
+                    .collect()
+            })
+            .collect();
+        times.extend(side_by_side(&lanes)?);
+    }
+    eprintln!("── seconds: {}", times.join(", "));
+    eprintln!("── {}", skipped::summary()?);
+    eprintln!("── all passed in {:.0} s", begin.elapsed().as_secs_f32());
+    Ok(())
+}
+
+/// Runs lanes side by side until each has ended or failed; returns the steps' names with their seconds.
+fn side_by_side(lanes: &[Vec<Step>]) -> Result<Vec<String>> {
+    let ended: Vec<Result<Vec<String>>> = thread::scope(|scope| {
+        let running: Vec<_> = lanes
+            .iter()
+            .map(|lane| scope.spawn(|| in_turn(lane)))
+            .collect();
+        let joined = running.into_iter().map(|lane| {
+            lane.join()
+                .unwrap_or_else(|_panic| bail!("a check panicked"))
+        });
+        joined.collect()
+    });
+    let mut times = Vec::new();
+    let mut failures = Vec::new();
+    for lane in ended {
+        match lane {
+            Ok(lane) => times.extend(lane),
+            Err(failure) => failures.push(format!("{failure:#}")),
+        }
+    }
+    if !failures.is_empty() {
+        bail!("{}", failures.join("\n"));
+    }
+    Ok(times)
+}
+
+/// Runs steps one after another and stops at the first that fails; returns their names with their seconds.
+fn in_turn(lane: &[Step]) -> Result<Vec<String>> {
+    let mut times = Vec::new();
+    for step in lane {
+        eprintln!("── {}", step.name);
         let begin = Instant::now();
         (step.check)().with_context(|| {
             format!(
@@ -119,130 +134,42 @@ pub(crate) fn command(only: &[String]) -> Result<()> {
         eprintln!("── {} passed in {secs:.0} s", step.name);
         times.push(format!("{} {secs:.0}", step.name));
     }
-    eprintln!("── seconds: {}", times.join(", "));
-    eprintln!("── {}", skipped::summary()?);
-    eprintln!("── all passed in {:.0} s", begin.elapsed().as_secs_f32());
-    Ok(())
+    Ok(times)
 }
 
-fn format() -> Result<()> {
-    process::run(process::cargo().args(["fmt", "--all", "--check"]))
-        .context("run `cargo fmt --all` in rust/")
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::atomic::{AtomicU32, Ordering};
 
-fn clippy() -> Result<()> {
-    let features = ["--features", "footfall/live,footfall_godot/editor"];
-    process::run(
-        process::cargo()
-            .args(["clippy", "--locked", "--workspace", "--all-targets"])
-            .args(features)
-            .args(["--", "-D", "warnings"]),
-    )
-}
-
-/// Runs all tests but the nodes', which need Godot.
-fn tests() -> Result<()> {
-    let mut cargo = process::cargo_without_nodes("test");
-    cargo.env(skipped::LIST, skipped::list());
-    let status = cargo.status().context("cannot start cargo")?;
-    if !status.success() {
-        bail!("`{}` failed ({status})", process::shown(&cargo));
+    #[test]
+    fn a_failure_ends_its_own_lane_and_every_failure_is_reported() {
+        static RUNS: AtomicU32 = AtomicU32::new(0);
+        let passes: fn() -> Result<()> = || {
+            RUNS.fetch_add(1, Ordering::Relaxed);
+            Ok(())
+        };
+        let fails: fn() -> Result<()> = || bail!("for a reason");
+        let lanes = [
+            vec![step("first", fails), step("never", passes)],
+            vec![step("beside", passes), step("last", fails)],
+        ];
+        let error = side_by_side(&lanes).unwrap_err().to_string();
+        assert_eq!(
+            error,
+            "first failed after 0 s: for a reason\nlast failed after 0 s: for a reason"
+        );
+        assert_eq!(RUNS.load(Ordering::Relaxed), 1);
+        let times = side_by_side(&[vec![step("one", passes)], vec![step("two", passes)]]).unwrap();
+        assert_eq!(times, ["one 0", "two 0"]);
     }
-    Ok(())
-}
 
-fn docs() -> Result<()> {
-    process::run(
-        process::cargo()
-            .args([
-                "doc",
-                "--quiet",
-                "--locked",
-                "--workspace",
-                "--no-deps",
-                "--features",
-                "footfall/live,footfall_godot/editor",
-            ])
-            .env("RUSTDOCFLAGS", "-D warnings"),
-    )
-}
-
-fn build_library() -> Result<()> {
-    library::build(&library::Options::default())
-}
-
-fn provision() -> Result<()> {
-    let engine = godot::provision()?;
-    eprintln!("Godot {} at {}", engine.version, engine.program.display());
-    link::ensure()
-}
-
-fn tests_in_godot() -> Result<()> {
-    let said = in_godot("tests/godot", "tests", &[])?;
-    // The tests' own report is worth seeing.
-    eprintln!("{}", process::tail(&said, 12));
-    csharp::check()
-}
-
-/// A game of some minutes, as fast as frames come: no error, no growth, no slow frame.
-fn play_in_godot() -> Result<()> {
-    let said = in_godot(
-        "tests/godot",
-        "play",
-        &["res://play/play.tscn", "--fixed-fps", "60"],
-    )?;
-    eprintln!("{}", process::tail(&said, 3));
-    Ok(())
-}
-
-/// Checks the parts of the add-on in the editor: dock, gizmo, preview.
-fn tests_in_the_editor() -> Result<()> {
-    let arguments = ["--editor", "--", "--editor-tests"];
-    let said = in_godot("tests/godot", "editor_tests", &arguments)?;
-    eprintln!("{}", process::tail(&said, 1));
-    Ok(())
-}
-
-fn demo_in_godot() -> Result<()> {
-    for (topic, scene) in demo::SCENES {
-        in_godot(
-            "demo_project",
-            &format!("demo_{topic}"),
-            &[scene, "--fixed-fps", "60", "--", "--frames", DEMO_FRAMES],
-        )?;
+    #[test]
+    fn an_unknown_step_is_refused_with_the_names_of_all() {
+        let error = command(&["clipy".to_owned()]).unwrap_err().to_string();
+        assert!(
+            error.contains("`clipy`") && error.contains("godot-tests"),
+            "{error}"
+        );
     }
-    Ok(())
-}
-
-/// Exports the demo as players get it: with the library's game flavour. The step `library` builds the editor's.
-fn exported_demo() -> Result<()> {
-    if !cfg!(target_os = "linux") {
-        return skipped::note("export", "the demo is exported on Linux only");
-    }
-    let engine = godot::provision()?;
-    if engine.release_template.is_none() {
-        return skipped::note("export", "this Godot came without an export template");
-    }
-    library::build_flavour(library::Flavour::Game, &library::Options::default())?;
-    let game = export::export(&engine)?;
-    export::start(&engine, &game)
-}
-
-/// Imports a project and runs a scene of it, the main one if none is named, without a window.
-fn in_godot(project: &str, name: &str, arguments: &[&str]) -> Result<String> {
-    let engine = godot::provision()?;
-    let folder = paths::repository_root().join(project);
-    require(&folder.join("project.godot"))?;
-    demo::import(&engine, &folder, name)?;
-    let log = paths::target_folder()
-        .join("verify")
-        .join(format!("{name}.log"));
-    engine_run::judged(open::headless(&engine, &folder).args(arguments), &log)
-}
-
-fn require(file: &Path) -> Result<()> {
-    if !file.is_file() {
-        bail!("{} is missing", file.display());
-    }
-    Ok(())
 }
