@@ -15,6 +15,7 @@ mod bench;
 mod bench_crowd;
 mod bevy;
 mod binary;
+mod chromium;
 mod contact_sheet;
 mod cross;
 mod csharp;

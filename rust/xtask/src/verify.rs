@@ -22,15 +22,20 @@ const fn step(name: &'static str, check: fn() -> Result<()>) -> Step {
 type Lane = &'static [Step];
 
 /// Stages that run one after another; the lanes of a stage run side by side. Lanes of one stage must not write the same files.
-const STAGES: [&[Lane]; 2] = [
+const STAGES: [&[Lane]; 4] = [
+    &[&[step("format", checks::format), step("tidy", tidy::command)]],
+    // The second lane waits for downloads.
+    &[
+        &[step("clippy", checks::clippy)],
+        &[
+            step("godot", checks::provision),
+            step("chromium", checks::browser),
+        ],
+    ],
     &[&[
-        step("format", checks::format),
-        step("tidy", tidy::command),
-        step("clippy", checks::clippy),
         step("tests", checks::tests),
         step("examples", examples::check),
         step("library", checks::build_library),
-        step("godot", checks::provision),
         // It measures frames, so nothing may run beside it.
         step("godot-play", checks::play_in_godot),
         // It replaces the library of the project that others play.

@@ -1,9 +1,10 @@
 //! The checks themselves, but for those that have a module of their own.
 
 use crate::{
-    csharp, demo, engine_run, export, godot, library, link, open, paths, process, skipped,
+    chromium, csharp, demo, engine_run, export, godot, library, link, open, paths, process, skipped,
 };
 use anyhow::{Context as _, Result, bail};
+use std::env;
 use std::path::Path;
 
 /// Number of frames that the demo runs.
@@ -28,6 +29,15 @@ pub(super) fn clippy() -> Result<()> {
 pub(super) fn tests() -> Result<()> {
     let mut cargo = process::cargo_without_nodes("test");
     cargo.env(skipped::LIST, skipped::list());
+    if let Some(browser) = chromium::fetched() {
+        let path = env::var_os("PATH").unwrap_or_default();
+        let folders = env::split_paths(&path).chain([browser]);
+        cargo.env(
+            "PATH",
+            env::join_paths(folders)
+                .context("the PATH has a folder whose name is no part of a PATH")?,
+        );
+    }
     let status = cargo.status().context("cannot start cargo")?;
     if !status.success() {
         bail!("`{}` failed ({status})", process::shown(&cargo));
@@ -70,6 +80,11 @@ pub(super) fn tests_in_godot() -> Result<()> {
     // The tests' own report is worth seeing.
     eprintln!("{}", process::tail(&said, 12));
     csharp::check()
+}
+
+/// Has a browser there for the tests of pages, which are skipped without one.
+pub(super) fn browser() -> Result<()> {
+    chromium::provision().or_else(|error| skipped::note("chromium", &error.to_string()))
 }
 
 /// A game of some minutes, as fast as frames come: no error, no growth, no slow frame.
