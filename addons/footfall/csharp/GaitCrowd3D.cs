@@ -415,7 +415,7 @@ namespace Footfall
         /// <summary>Sets the style weights of one walker, in the order of <see cref="Styles"/>, from its next step on. They are rounded to eighths, so that a crowd needs few mixtures.</summary>
         public void SetAgentStyle(int agent, float[] weights) => Native.Call(MethodName.SetAgentStyle, agent, weights);
 
-        /// <summary>Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For <see cref="Behaviour"/> scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
+        /// <summary>Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For <see cref="Behaviour"/> scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once: send a thousand walkers over several frames. Shapes and ids as of <see cref="SetSpeeds"/>.</summary>
         /// <remarks>Returns <c>true</c> if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet: it returns <c>false</c>, and the walkers stand until there is one, and go.</remarks>
         public bool SetDestinations(Vector3[] destinations, int[] agents) => Native.Call(MethodName.SetDestinations, destinations, agents).AsBool();
 

@@ -264,6 +264,31 @@ fn who_awaits_a_route_stands_until_it_is_known() {
 }
 
 #[test]
+fn a_way_is_new_until_its_ground_is_known_and_again_at_a_corner() {
+    let mut crowd = crowd(Routing::Scripted);
+    crowd.add([(Vec3::ZERO, 0.0)].into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    let corner = Vec2::new(0.0, 5.0);
+    let agent = &mut crowd.agents_mut()[0];
+    assert!(!agent.is_on_new_way(), "it has no route");
+    agent.go_along([corner, Vec2::new(6.0, 5.0)].into_iter());
+    assert!(agent.is_on_new_way());
+    agent.guide(None, [0.5; 2]);
+    for _ in 0..(10.0 / DT_SECS) as usize {
+        if crowd.agents()[0].is_on_new_way() {
+            break;
+        }
+        walk(&mut crowd, DT_SECS, |_| {});
+    }
+    let agent = &mut crowd.agents_mut()[0];
+    assert!(agent.is_on_new_way(), "at the corner");
+    let place = Vec2::new(agent.place.x, agent.place.z);
+    assert!(place.distance(corner) < 1.0, "{place}");
+    agent.go_to(corner);
+    assert!(!agent.is_on_new_way(), "no ground is known to a place");
+}
+
+#[test]
 fn whoever_arrives_slows_down_and_stops_at_the_goal() {
     let mut crowd = crowd(Routing::Scripted);
     crowd.add((0..6).map(|n| (Vec3::new(3.0 * n as f32, 0.0, 0.0), 0.0)));

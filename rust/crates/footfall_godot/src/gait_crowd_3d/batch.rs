@@ -120,8 +120,8 @@ impl GaitCrowd3D {
     }
 
     /// Sends walkers to positions in this node's space, around obstacles on the world's navigation map. They stop there. For
-    /// `behaviour` scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once. Shapes and ids as of
-    /// `set_speeds()`.
+    /// `behaviour` scripted. A non-finite position keeps the goal. Each path takes some tens of microseconds to find, once: send a thousand walkers over
+    /// several frames. Shapes and ids as of `set_speeds()`.
     ///
     /// Returns `true` if there was a path for every walker; a walker without one keeps its goal. In the first frames of a scene there is no map yet: it
     /// returns `false`, and the walkers stand until there is one, and go.

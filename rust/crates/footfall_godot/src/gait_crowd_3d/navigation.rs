@@ -8,7 +8,7 @@ use godot::prelude::*;
 
 /// Most routes that are computed in one frame: each takes tens of microseconds.
 const MOST_A_FRAME: usize = 32;
-/// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames.
+/// Walkers whose ground is checked in one frame, to keep them off walls: this many, or as many as are needed to check all of them within this many frames; and as many of those on a new way.
 const MOST_KEPT: usize = 32;
 const MOST_FRAMES: usize = 60;
 /// Distance of the checked ground ahead of a walker, metres; a runner looks ahead for this time, seconds, for a turn begins with the next step.
@@ -75,24 +75,37 @@ impl Navigation {
             let place = self.crowd_from_world * *place;
             Vec2::new(place.x, place.z)
         }));
-        // Its next step may begin before its turn comes to be looked at.
-        self.look(agent);
         true
     }
 
-    /// Sends those off who await a route, and looks at the ground ahead of those who are on their way, beginning at this row; the row to begin at next time.
+    /// Sends those off who await a route, and looks at the ground ahead of those who are on their way: in turn, beginning at this row, and of those who have just set off or come to a corner
+    /// before their next step. Returns the row to begin at next time.
     pub(super) fn keep(&mut self, walkers: &mut Crowd, from: usize) -> usize {
         let rows = walkers.agents().len();
+        let in_turn = |from: usize| (from.min(rows)..rows).chain(0..from.min(rows));
         let mut left = MOST_KEPT.max(rows / MOST_FRAMES);
-        for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
+        let mut next = 0;
+        for row in in_turn(from) {
             let agent = &mut walkers.agents_mut()[row];
             agent.follow_route();
             left -= usize::from(self.set_off(agent) || self.look(agent));
             if left == 0 {
-                return row + 1;
+                next = row + 1;
+                break;
             }
         }
-        0
+        let mut left = MOST_KEPT;
+        for row in in_turn(next) {
+            let agent = &mut walkers.agents_mut()[row];
+            if agent.is_on_new_way() {
+                self.look(agent);
+                left -= 1;
+            }
+            if left == 0 {
+                break;
+            }
+        }
+        next
     }
 
     /// Sends a walker to the place to which it awaits a route; whether it awaits one. It stays where it is if there is none.

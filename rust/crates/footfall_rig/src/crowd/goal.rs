@@ -99,6 +99,11 @@ impl Agent {
         }
     }
 
+    /// Returns whether it goes along a route and the ground has not been queried since it set out, or came to the last corner.
+    pub fn is_on_new_way(&self) -> bool {
+        self.guidance == Guidance::Route && self.is_on_its_way()
+    }
+
     /// Sets the ground around it: a direction that stays on it, where the [straight way](Self::straight_way) does not, and how far it may turn aside from that to the right and to the left,
     /// radians.
     pub fn guide(&mut self, way: Option<Vec2>, room_rad: [f32; 2]) {
