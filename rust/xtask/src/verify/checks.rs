@@ -75,16 +75,16 @@ pub(super) fn provision() -> Result<()> {
     link::ensure()
 }
 
+/// Has a browser there for the tests of pages, which are skipped without one.
+pub(super) fn browser() -> Result<()> {
+    chromium::provision().or_else(|error| skipped::note("chromium", &error.to_string()))
+}
+
 pub(super) fn tests_in_godot() -> Result<()> {
     let said = in_godot("tests/godot", "tests", &[])?;
     // The tests' own report is worth seeing.
     eprintln!("{}", process::tail(&said, 12));
     csharp::check()
-}
-
-/// Has a browser there for the tests of pages, which are skipped without one.
-pub(super) fn browser() -> Result<()> {
-    chromium::provision().or_else(|error| skipped::note("chromium", &error.to_string()))
 }
 
 /// A game of some minutes, as fast as frames come: no error, no growth, no slow frame.

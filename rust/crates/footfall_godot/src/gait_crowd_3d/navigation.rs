@@ -81,31 +81,28 @@ impl Navigation {
     /// Sends those off who await a route, and looks at the ground ahead of those who are on their way: in turn, beginning at this row, and of those who have just set off or come to a corner
     /// before their next step. Returns the row to begin at next time.
     pub(super) fn keep(&mut self, walkers: &mut Crowd, from: usize) -> usize {
+        let next = self.keep_in_turn(walkers, from);
+        let (before, after) = walkers.agents_mut().split_at_mut(next);
+        let agents = after.iter_mut().chain(before);
+        for agent in agents.filter(|agent| agent.is_on_new_way()).take(MOST_KEPT) {
+            self.look(agent);
+        }
+        next
+    }
+
+    /// The part of [`keep`](Self::keep) that goes through all rows.
+    fn keep_in_turn(&mut self, walkers: &mut Crowd, from: usize) -> usize {
         let rows = walkers.agents().len();
-        let in_turn = |from: usize| (from.min(rows)..rows).chain(0..from.min(rows));
         let mut left = MOST_KEPT.max(rows / MOST_FRAMES);
-        let mut next = 0;
-        for row in in_turn(from) {
+        for row in (from.min(rows)..rows).chain(0..from.min(rows)) {
             let agent = &mut walkers.agents_mut()[row];
             agent.follow_route();
             left -= usize::from(self.set_off(agent) || self.look(agent));
             if left == 0 {
-                next = row + 1;
-                break;
+                return row + 1;
             }
         }
-        let mut left = MOST_KEPT;
-        for row in in_turn(next) {
-            let agent = &mut walkers.agents_mut()[row];
-            if agent.is_on_new_way() {
-                self.look(agent);
-                left -= 1;
-            }
-            if left == 0 {
-                break;
-            }
-        }
-        next
+        0
     }
 
     /// Sends a walker to the place to which it awaits a route; whether it awaits one. It stays where it is if there is none.
