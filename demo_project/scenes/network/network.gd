@@ -1,7 +1,7 @@
 extends Node3D
 ## Two machines, one crowd: host a game or join one; all characters take the same steps on both.
 ##
-## Without a user the scene is both: a host who walks in circles, and beside it a guest's machine that shows the same people.
+## Without a user the scene is both: a host who walks in circles, and beside it a guest's machine that shows the same people. Networks do not wait for frames: check it in real time.
 
 const PORT_OF_CHECK := 24_681
 ## The guest's machine shows the host's character where it was so long ago at most, seconds, within so much, metres.
@@ -14,7 +14,7 @@ const BESIDE := Vector3(26, 0, 0)
 ## Footsteps of the crowd are at the same place on both machines within this, metres, from so long after the guest has come, seconds.
 const SAME_PLACE := 0.05
 const JOINED_SECS := 2.0
-## One of this many footsteps may be elsewhere: frames of a check do not wait for the network, and late walkers are corrected.
+## One of this many footsteps may be elsewhere: walkers whose steps come late are corrected.
 const CORRECTED_OF := 20
 
 var _guest: NetworkWorld
@@ -76,7 +76,7 @@ func begin_check() -> void:
 	_checked_secs = 0.0
 
 
-func problems(frames: int) -> PackedStringArray:
+func problems(_frames: int) -> PackedStringArray:
 	var found := PackedStringArray()
 	var here := _world.player_of(1)
 	var there := _guest.player_of(1)
@@ -87,14 +87,14 @@ func problems(frames: int) -> PackedStringArray:
 		off = minf(off, place.distance_to(there.position))
 	if off > OFF_ITS_WAY:
 		found.append("the guest's machine shows the host's character %.2f m from where it was in the last %.1f s" % [off, BEHIND_SECS])
-	if _shown < frames / 60.0 - 2.0:
-		found.append("the guest's machine has shown %d of its footsteps in %d frames" % [_shown, frames])
+	if _shown < _checked_secs - 2.0:
+		found.append("the guest's machine has shown %d of its footsteps in %.1f s" % [_shown, _checked_secs])
 	if _thrown > IN_A_FRAME:
 		found.append("the host's character was thrown by %.2f m" % _thrown)
 	var people := _people_of(_world)
 	if people.is_empty() or people != _people_of(_guest):
 		found.append("the guest's machine has other people than the host: %s, not %s" % [_people_of(_guest), people])
-	if _made_up * CORRECTED_OF > _shown_of_crowd or _shown_of_crowd < people.size() * (frames / 60.0 - JOINED_SECS - 1.0):
+	if _made_up * CORRECTED_OF > _shown_of_crowd or _shown_of_crowd < people.size() * (_checked_secs - JOINED_SECS - 1.0):
 		found.append("of %d footsteps that the guest's machine has shown of %d people, %d were never made" % [_shown_of_crowd, people.size(), _made_up])
 	return found
 

@@ -12,7 +12,7 @@ extends Node
 ## `FRAMES_OF_CHECK`, when what is checked takes longer than it is asked to run.
 ## A scene with `is_getting_ready()` is waited for. One with a tour has `TOUR_SECS` and `tour(seconds)`, which does what is due by then.
 ##
-## Start Godot with `--fixed-fps 60` for both, so that time runs by frames.
+## Start Godot with `--fixed-fps 60`, so that time runs by frames. The check of a scene with a network takes real time, `--max-fps 30`.
 
 const PICTURES := 16
 const FRAMES_BETWEEN := 15

@@ -42,8 +42,6 @@ const STAGES: [&[Lane]; 4] = [
         step("godot-play", checks::play_in_godot),
         // It replaces the library of the project that others play.
         step("godot-editor", checks::tests_in_the_editor),
-        // Frames of its network scene do not wait for the network, and on a busy machine outrun it.
-        step("godot-demo", checks::demo_in_godot),
     ]],
     // These wait for most of their time: for frames, for networks, for ports.
     &[
@@ -52,6 +50,7 @@ const STAGES: [&[Lane]; 4] = [
             step("godot-network", network::check),
             step("export", checks::exported_demo),
             step("newcomer", newcomer::check),
+            step("godot-demo", checks::demo_in_godot),
         ],
     ],
 ];

@@ -1,0 +1,24 @@
+class_name GaitEnet
+extends RefCounted
+## ENet's part in the replication of walkers.
+##
+## ENet drops unreliable messages on purpose while replies take longer than usual. Long frames at either end look the same to it: while a game loads, or runs at 30
+## frames a second, it may drop nearly all updates of walkers for ten seconds.
+
+## Time between two measurements of the usual delay, milliseconds: ENet's default.
+const INTERVAL_MSECS := 5000
+## The most by which ENet raises the share of messages that it sends, 32 being all of them.
+const RAISE := 32
+
+
+## Has a connection of this machine send all unreliable messages. Does nothing without ENet, and for a peer that is reached through the server.
+static func send_all(multiplayer: MultiplayerAPI, peer: int) -> void:
+	var network := multiplayer.multiplayer_peer
+	# Engines that are built without ENet do not know the class.
+	if network == null or not network.is_class("ENetMultiplayerPeer"):
+		return
+	if network.is_server_relay_supported() and not multiplayer.is_server() and peer != MultiplayerPeer.TARGET_PEER_SERVER:
+		return
+	var connection: PacketPeer = network.call(&"get_peer", peer)
+	if connection != null:
+		connection.call(&"throttle_configure", INTERVAL_MSECS, RAISE, 0)
