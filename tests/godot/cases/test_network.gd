@@ -68,7 +68,7 @@ func _check_connections(made: Callable, later: bool) -> void:
 			get_tree().set_multiplayer(null, path)
 
 
-## How fast a connection lowers the share of unreliable messages that it sends.
+## Rate at which a connection lowers the share of unreliable messages that it sends.
 func _drop(connection: ENetPacketPeer) -> int:
 	return int(connection.get_statistic(ENetPacketPeer.PEER_PACKET_THROTTLE_DECELERATION))
 
