@@ -74,8 +74,8 @@ fn accuracies(comparison: &Comparison, wanted: View) -> [f64; 2] {
     let found = comparison
         .told_apart
         .iter()
-        .find(|(view, ..)| *view == wanted);
-    let (_, verdict, _) = found.expect("every view is judged");
+        .find(|(view, _)| *view == wanted);
+    let (_, verdict) = found.expect("every view is judged");
     verdict.accuracies.map(|accuracy| accuracy.mean)
 }
 

@@ -3,7 +3,7 @@
 //! Strides of both are reduced to the swing of fourteen parts of the body, low-passed at 6 Hz so that the noise of markers does not
 //! count. Two classifiers learn which strides were captured, from some people and some seeds, and judge others
 //! ([`judge`](folds::judge)). People differ from each other too, so the yardstick is what people score in the generator's place
-//! ([`people_apart`](folds::people_apart)), not 0.5. Beside the verdict stand measures that say where a difference lies: [`detail`] of 3 to
+//! ([`people_apart`]), not 0.5. Beside the verdict stand measures that say where a difference lies: [`detail`] of 3 to
 //! 6 Hz by part, [`root`] (surge, limp and bob of the hips), [`posture`] (knees, pitch of the feet), [`bouts`] (speed, cadence, flight) and
 //! [`gait`] (these and slip over all walkers).
 //!
@@ -68,8 +68,8 @@ pub struct Comparison {
     pub strides: [usize; 2],
     /// Captured people with strides, generated seeds with strides.
     pub walkers: [usize; 2],
-    /// Classifiers on each [`View`]: generated against captured, and people in the generator's place.
-    pub told_apart: Vec<(View, Verdict, Option<Verdict>)>,
+    /// Classifiers on each [`View`], in the order of [`View::ALL`].
+    pub told_apart: Vec<(View, Verdict)>,
     /// Detail of 3 to 6 Hz by part: captured, generated.
     pub detail: Vec<(&'static str, [PartDetail; 2])>,
     /// Harmonics of the hips: captured, generated.
@@ -108,9 +108,7 @@ pub fn compare(
         .into_par_iter()
         .map(|view| {
             let (people, seeds) = (samples(&captured, view), samples(&generated, view));
-            let verdict = folds::judge(&people, &seeds)?;
-            let people = folds::people_apart(&people)?;
-            Ok((view, verdict, people))
+            Ok((view, folds::judge(&people, &seeds)?))
         })
         .collect::<Result<_, EvaluateError>>()?;
     let both = [&captured, &generated];
@@ -124,6 +122,21 @@ pub fn compare(
         posture: both.map(|walkers| Posture::of(walkers.iter().flatten())),
         gait: measures,
     })
+}
+
+/// Scores of captured people in the generator's place ([`folds::people_apart`]) on each [`View`], in the order of [`View::ALL`].
+///
+/// # Errors
+/// Errors of the classifiers.
+pub fn people_apart(
+    captured: &[Walker],
+    gait: Gait,
+) -> Result<Vec<Option<Verdict>>, EvaluateError> {
+    let people = strides_of(captured, gait);
+    View::ALL
+        .into_par_iter()
+        .map(|view| folds::people_apart(&samples(&people, view)))
+        .collect()
 }
 
 /// Walkers fewer than this cannot be divided into those learned from and those judged.

@@ -13,7 +13,7 @@ use footfall_motion::corpus::Corpus;
 use footfall_motion::steps::segment_walks;
 use footfall_synth::{GaitChoice, WalkConfig, synthesize};
 use footfall_train::evaluate::told_apart::bouts::{Bout, Gait};
-use footfall_train::evaluate::told_apart::{Walker, compare};
+use footfall_train::evaluate::told_apart::{Walker, compare, people_apart};
 use rayon::prelude::*;
 use report::Report;
 use speeds::Speeds;
@@ -118,12 +118,15 @@ fn evaluate(args: &NaturalnessArgs) -> Result<Report> {
     progress.stage("generating walks", 0);
     let generated = seeds(&Arc::new(model), args, &speeds)?;
     progress.stage("judging", 0);
-    let comparison = compare(&captured, &generated, args.gait.gait())
-        .with_context(|| args.judged.corpus.display().to_string())?;
+    let gait = args.gait.gait();
+    let corpus_name = || args.judged.corpus.display().to_string();
+    let comparison = compare(&captured, &generated, gait).with_context(corpus_name)?;
+    let people = people_apart(&captured, gait).with_context(corpus_name)?;
     progress.finish();
     Ok(Report::new(
-        args.gait.gait(),
+        gait,
         &comparison,
+        &people,
         corpus.report.reasons(),
     ))
 }

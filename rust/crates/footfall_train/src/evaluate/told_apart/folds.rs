@@ -149,3 +149,45 @@ fn share(answers: &[bool], right: bool) -> f64 {
     }
     answers.iter().filter(|answer| **answer == right).count() as f64 / answers.len() as f64
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::RngExt as _;
+
+    /// Strides of people, each of whom differs from the others by a manner of this size.
+    fn strides(people: usize, manner: f64) -> Vec<Sample> {
+        let mut chance = ChaCha8Rng::seed_from_u64(3);
+        let mut all = Vec::new();
+        for walker in 0..people {
+            let own: [f64; 3] = core::array::from_fn(|_| manner * chance.random_range(-1.0..1.0));
+            for _ in 0..10 {
+                let features = own.map(|own| own + chance.random_range(-1.0..1.0));
+                all.push(Sample {
+                    walker,
+                    features: features.to_vec(),
+                });
+            }
+        }
+        all
+    }
+
+    #[test]
+    fn people_who_walk_alike_are_not_told_apart_and_those_with_manners_are() {
+        let scores = |manner: f64| {
+            let verdict = people_apart(&strides(6, manner)).expect("sound features");
+            verdict.expect("enough people").accuracies
+        };
+        for (alike, apart) in scores(0.0).into_iter().zip(scores(6.0)) {
+            assert!((0.4..0.6).contains(&alike.mean), "{alike:?}");
+            assert!(apart.mean > 0.65, "{apart:?}");
+            assert!(apart.least < apart.mean && apart.mean < apart.greatest);
+        }
+    }
+
+    #[test]
+    fn three_people_are_too_few_to_be_halved() {
+        let verdict = people_apart(&strides(3, 1.0)).expect("sound features");
+        assert_eq!(verdict, None);
+    }
+}

@@ -86,8 +86,14 @@ impl Measures {
 }
 
 impl Report {
-    pub(super) fn new(gait: Gait, comparison: &Comparison, skipped: Vec<String>) -> Self {
-        let told_apart = |(view, verdict, people): &(View, Verdict, Option<Verdict>)| {
+    /// The report of a comparison, with the scores of people in the generator's place.
+    pub(super) fn new(
+        gait: Gait,
+        comparison: &Comparison,
+        people: &[Option<Verdict>],
+        skipped: Vec<String>,
+    ) -> Self {
+        let told_apart = |((view, verdict), people): (&(View, Verdict), &Option<Verdict>)| {
             let of_people = |classifier: usize| {
                 let people = people.as_ref()?;
                 let Accuracy {
@@ -120,7 +126,12 @@ impl Report {
             captured_strides: comparison.strides[0],
             seeds: comparison.walkers[1],
             generated_strides: comparison.strides[1],
-            told_apart: comparison.told_apart.iter().map(told_apart).collect(),
+            told_apart: comparison
+                .told_apart
+                .iter()
+                .zip(people)
+                .map(told_apart)
+                .collect(),
             pace: Pace::new(&comparison.gait),
             detail: comparison.detail.iter().map(detail).collect(),
             captured,
