@@ -7,6 +7,7 @@ use footfall_imu::csv;
 use footfall_imu::events::{detect_swings, events_of};
 use footfall_motion::corpus::{IndexRow, read_index};
 use footfall_motion::sensor_switches::detect_sensor_switches;
+use rayon::prelude::*;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fs;
@@ -37,6 +38,15 @@ struct Event {
     kind: String,
 }
 
+/// A recording's known events, and those that each detector has found.
+struct Judged {
+    category: String,
+    worn: Side,
+    known: Vec<Event>,
+    /// Name of the detector, the foot whose events it has found, and these.
+    found: Vec<(&'static str, Side, Times)>,
+}
+
 /// Agreement of every recording of an index, by category, kind of contact and detector; with a model, that of the bodies that the
 /// recordings drive as well.
 pub(super) fn compare(
@@ -44,48 +54,70 @@ pub(super) fn compare(
     bodies: Option<&Bodies>,
     tolerance_ms: f64,
 ) -> Result<BTreeMap<String, Agreement>, ContactsError> {
+    let rows = read_index(index)?;
+    let judged = rows.par_iter().map(|row| judge(row, index, bodies));
+    let judged: Vec<Judged> = judged.collect::<Result<_, _>>()?;
     let mut agreements: BTreeMap<String, Agreement> = BTreeMap::new();
-    for row in read_index(index)? {
-        let events = row.column(EVENTS_COLUMN).unwrap_or_default();
-        if events.is_empty() {
-            let reason = format!(
-                "column \"{EVENTS_COLUMN}\" is missing or empty; name the file with the known events there"
-            );
-            return Err(lack(index, &row, reason));
+    for recording in &judged {
+        recording.add_to(&mut agreements, tolerance_ms);
+    }
+    agreements.values_mut().for_each(Agreement::summarise);
+    Ok(agreements)
+}
+
+/// Finds the events of one recording by every detector.
+fn judge(row: &IndexRow, index: &Path, bodies: Option<&Bodies>) -> Result<Judged, ContactsError> {
+    let events = row.column(EVENTS_COLUMN).unwrap_or_default();
+    if events.is_empty() {
+        let reason = format!(
+            "column \"{EVENTS_COLUMN}\" is missing or empty; name the file with the known events there"
+        );
+        return Err(lack(index, row, reason));
+    }
+    let known = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
+    let recording = csv::read(&row.path)?;
+    let switches =
+        detect_sensor_switches(&recording.evenly_spaced().channels(), recording.rate_hz())
+            .map_err(|error| ContactsError::file(&row.path, error))?;
+    let switches = switches
+        .iter()
+        .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
+    let swings = events_of(&detect_swings(&recording)).into_iter();
+    let swings = swings.map(|event| (event.time_secs, event.kind));
+    let worn = worn_foot(row, index, &known)?;
+    let mut found: Vec<(&str, Side, Times)> = vec![
+        ("switches", worn, switches.collect()),
+        ("swings", worn, swings.collect()),
+    ];
+    if let Some(bodies) = bodies {
+        let driven = bodies.events(&row.path, &recording, worn)?;
+        let swings = events_of(&driven.swings).into_iter();
+        let swings = swings.map(|event| (event.time_secs, event.kind));
+        found.push(("swings as they come", worn, swings.collect()));
+        for (name, side, events) in [
+            ("body live", worn, &driven.live),
+            ("body whole", worn, &driven.whole),
+            ("other foot live", worn.other(), &driven.live),
+            ("other foot whole", worn.other(), &driven.whole),
+        ] {
+            let own = events.iter().filter(|event| event.side == side);
+            let own = own.map(|event| (event.time_secs, event.kind));
+            found.push((name, side, own.collect()));
         }
-        let events = read_events(&index.parent().unwrap_or(Path::new("")).join(events))?;
-        let recording = csv::read(&row.path)?;
-        let switches =
-            detect_sensor_switches(&recording.evenly_spaced().channels(), recording.rate_hz())
-                .map_err(|error| ContactsError::file(&row.path, error))?;
-        let switches = switches
-            .iter()
-            .map(|switch| (recording.start_secs() + switch.time_secs, switch.kind));
-        let found = events_of(&detect_swings(&recording));
-        let swings = found.iter().map(|event| (event.time_secs, event.kind));
-        let worn = worn_foot(&row, index, &events)?;
-        let mut detectors: Vec<(&str, Side, Times)> = vec![
-            ("switches", worn, switches.collect()),
-            ("swings", worn, swings.collect()),
-        ];
-        if let Some(bodies) = bodies {
-            let found = bodies.events(&row.path, &recording, worn)?;
-            let swings = events_of(&found.swings).into_iter();
-            let swings = swings.map(|event| (event.time_secs, event.kind));
-            detectors.push(("swings as they come", worn, swings.collect()));
-            for (name, side, found) in [
-                ("body live", worn, &found.live),
-                ("body whole", worn, &found.whole),
-                ("other foot live", worn.other(), &found.live),
-                ("other foot whole", worn.other(), &found.whole),
-            ] {
-                let own = found.iter().filter(|event| event.side == side);
-                let own = own.map(|event| (event.time_secs, event.kind));
-                detectors.push((name, side, own.collect()));
-            }
-        }
-        for (detector, side, found) in &detectors {
-            let known: Vec<&Event> = events.iter().filter(|e| e.is_of(*side, worn)).collect();
+    }
+    Ok(Judged {
+        category: row.category().to_owned(),
+        worn,
+        known,
+        found,
+    })
+}
+
+impl Judged {
+    fn add_to(&self, agreements: &mut BTreeMap<String, Agreement>, tolerance_ms: f64) {
+        for (detector, side, found) in &self.found {
+            let known = self.known.iter();
+            let known: Vec<&Event> = known.filter(|e| e.is_of(*side, self.worn)).collect();
             let times = || known.iter().map(|event| event.time_s);
             let judged = times().fold(f64::INFINITY, f64::min) - MARGIN_SECS
                 ..=times().fold(f64::NEG_INFINITY, f64::max) + MARGIN_SECS;
@@ -94,7 +126,7 @@ pub(super) fn compare(
                 let found = found.iter().filter(|(_, other)| *other == kind);
                 let found = found.map(|(time_secs, _)| *time_secs);
                 let kind = kind.name().replace('_', " ");
-                let name = format!("{}, {kind}, {detector}", row.category());
+                let name = format!("{}, {kind}, {detector}", self.category);
                 let agreement = agreements.entry(name).or_default();
                 agreement.recordings += 1;
                 agreement.add(
@@ -105,8 +137,6 @@ pub(super) fn compare(
             }
         }
     }
-    agreements.values_mut().for_each(Agreement::summarise);
-    Ok(agreements)
 }
 
 /// An error about a row of the index.
