@@ -45,7 +45,6 @@ func _process(_delta: float) -> void:
 			walker.position = Vector3(_course.lane_x(lane), 0.0, -END_M)
 			walker.rotation = Vector3.ZERO
 			_soles[lane].clear()
-		_watch(lane)
 	_camera.target_position = Vector3(0, 0.9, 0)
 
 
@@ -68,6 +67,8 @@ func _add(lane: int) -> void:
 	placement_of(walker).foot_planted.connect(func(_foot: StringName, _at: Vector3, _normal: Vector3) -> void: footsteps += 1)
 	walkers.append(walker)
 	_soles.append({})
+	# Soles are judged as they are drawn: the platform moves before them.
+	gait.get_skeleton().skeleton_updated.connect(_watch.bind(lane))
 
 
 ## Notes how far locked soles moved over what supports them.
