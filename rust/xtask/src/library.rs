@@ -159,11 +159,11 @@ fn run(
         _ => "release",
     };
     cargo.args(["--profile", profile]);
-    match flavour {
-        Flavour::Editor => cargo.args(["--features", "editor"]),
-        Flavour::Game if profile == "shipped" => &mut cargo,
-        Flavour::Game => cargo.args(["--features", CLASS_DOCS]),
-    };
+    if flavour == Flavour::Editor {
+        cargo.args(["--features", "editor"]);
+    } else if profile != "shipped" {
+        cargo.args(["--features", CLASS_DOCS]);
+    }
     let workspace = paths::workspace();
     let argument = match platform.system() {
         "windows" if options.cross => Some(workspace.join(EXPORTS).display().to_string()),
