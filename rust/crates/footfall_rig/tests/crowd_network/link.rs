@@ -71,6 +71,8 @@ pub(crate) struct Link {
     pub(crate) shown: Prints,
     /// Bytes that were sent about steps, and about people.
     pub(crate) sent: [usize; 2],
+    /// Machines that stand still, as while they load: here, there.
+    pub(crate) pauses: [bool; 2],
     /// Fastest that anybody went there, m/s, who was there the frame before.
     pub(crate) fastest_mps: f32,
 }
@@ -96,6 +98,7 @@ impl Link {
             made: Prints::new(),
             shown: Prints::new(),
             sent: [0; 2],
+            pauses: [false; 2],
             fastest_mps: 0.0,
         }
     }
@@ -115,6 +118,16 @@ impl Link {
     /// Lets a frame pass here and there.
     pub(crate) fn frame(&mut self) {
         self.secs += DT_SECS;
+        let [here, there] = self.pauses;
+        if !here {
+            self.frame_here();
+        }
+        if !there {
+            self.frame_there();
+        }
+    }
+
+    fn frame_here(&mut self) {
         self.here.begin_all().expect("a walk");
         self.here.advance(DT_SECS, true);
         note(&mut self.made, &self.here, self.secs);
@@ -141,6 +154,9 @@ impl Link {
                     .push_back((at.max(least.unwrap_or(0.0)), message));
             }
         }
+    }
+
+    fn frame_there(&mut self) {
         let now = self.secs;
         let mut waiting = VecDeque::new();
         for (at, message) in core::mem::take(&mut self.under_way) {

@@ -163,6 +163,27 @@ fn what_is_off_after_an_outage_is_walked_off() {
     assert!(nearly_all < SAME_PLACE_M, "{nearly_all} m, {worst} at most");
 }
 
+/// A machine that loads something stands still for two seconds, and its crowd with it.
+#[test]
+fn who_stood_still_finds_the_others_again() {
+    for pauses in [[true, false], [false, true]] {
+        let mut link = Link::new(wander(), 60);
+        link.join();
+        link.walk(10.0);
+        link.pauses = pauses;
+        link.walk(2.0);
+        link.pauses = [false; 2];
+        let back = link.secs;
+        link.walk(24.0);
+        let [.., worst] = link.shares(back - 2.0);
+        assert!(worst > 2.0 * SAME_PLACE_M, "nobody was off: {worst} m");
+        let [median, _, _, worst] = link.shares(back + 6.0);
+        println!("{pauses:?}: {median} m in the median, {worst} at most");
+        let [.., nearly_all, worst] = link.shares(back + 14.0);
+        assert!(nearly_all < SAME_PLACE_M, "{nearly_all} m, {worst} at most");
+    }
+}
+
 #[test]
 fn a_small_budget_is_kept_and_shared_by_who_needs_it() {
     let mut link = Link::new(wander(), 120);

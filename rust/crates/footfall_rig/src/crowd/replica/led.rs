@@ -16,8 +16,11 @@ const IN_TIME_SECS: f64 = 0.4;
 /// Greatest distance, in steps, of a received step from the current one for a comparison of their times: without updates a walk may be whole steps ahead or late.
 const NEAR_STEPS: u16 = 2;
 
+/// Greatest time from the last received step, in steps, at which it says which step is on now: later, the walk itself knows better.
+const FRESH_STEPS: f64 = 3.0;
+
 /// Distance, in metres, and delay, in seconds, beyond which a walk begins again at its place.
-const LOST_M: f32 = 3.0;
+const LOST_M: f32 = 5.0;
 const LOST_SECS: f64 = 1.5;
 
 /// Time after which a due step is skipped, seconds: the sender's walker is in the next one.
@@ -159,11 +162,11 @@ impl LedWalker {
 
     /// The step that follows when the current one is over.
     pub(super) fn next(&mut self, walker: &CrowdWalker, now: &Now<'_>) -> Option<LedStep> {
-        let number = walker.number();
-        let natural = number.wrapping_add(1);
         if walker.comes_to_rest() {
             return self.leave_rest(walker, now);
         }
+        let number = walker.number();
+        let natural = self.next_number(walker, now);
         let mut moved = LedAim::None;
         while let Some(next) = self.first().copied() {
             let steps = next.number.wrapping_sub(natural).cast_signed();
@@ -200,6 +203,24 @@ impl LedWalker {
                 _ => moved,
             },
         })
+    }
+
+    /// Number of the next step. It follows the current one unless a machine has stood still and the walks are whole strides apart: then it is the number that is due, or
+    /// the one beside it for the same foot. Otherwise no received step would be taken again.
+    fn next_number(&self, walker: &CrowdWalker, now: &Now<'_>) -> u16 {
+        let natural = walker.number().wrapping_add(1);
+        let Some(last) = self.last.filter(|last| !last.rests) else {
+            return natural;
+        };
+        let own_secs = walker.secs_of_step() + walker.secs_to_next_step();
+        let late_steps = now.late_secs(&last) / f64::from(now.start.size.sqrt() * own_secs);
+        if late_steps.abs() > FRESH_STEPS {
+            return natural;
+        }
+        let due = last.number.wrapping_add_signed(late_steps.round() as i16);
+        // Feet keep their turns.
+        let pairs = natural.wrapping_sub(due).cast_signed() / 2;
+        natural.wrapping_sub_signed(2 * pairs)
     }
 
     /// The step with which a walker leaves its rest, if it is time.
