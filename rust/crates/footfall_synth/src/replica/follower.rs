@@ -24,6 +24,9 @@ const LOST_HEIGHT_M: f32 = 1.5;
 const LOST_RAD: f32 = 1.6;
 const LOST_SECS: f64 = 1.5;
 
+/// Time from the last received step, in steps, up to which it determines the number that is due: later, the walk itself knows better.
+const FRESH_STEPS: f64 = 3.0;
+
 /// Errors beyond which a resting walker steps to its place, metres and radians, and the time of rest before it does, seconds.
 const OFF_M: f32 = 0.04;
 const OFF_RAD: f32 = 0.17;
@@ -265,9 +268,8 @@ impl WalkFollower {
         generator: &mut GaitGenerator,
         shared_from_start: &GroundTransform,
     ) -> bool {
-        let (number, _) = generator.progress();
         let rests = generator.comes_to_rest();
-        let natural = number.wrapping_add(1);
+        let natural = self.next_number(generator);
         let due = |next: &&Planning| self.clock.due_secs(next.at_secs) <= self.now_secs;
         let next = self.queue.next().copied();
         if rests {
@@ -284,7 +286,7 @@ impl WalkFollower {
             }
         }
         self.rested_secs = 0.0;
-        let out_of_step = next.map(|next| next.planned.steps_from(number));
+        let out_of_step = next.map(|next| next.planned.steps_from(natural.wrapping_sub(1)));
         let number = match (next, out_of_step) {
             // A standing walker can start with either foot.
             (Some(next), _) if rests => next.planned.number,
@@ -316,6 +318,29 @@ impl WalkFollower {
             generator.aim_at(&resting);
         }
         true
+    }
+
+    /// Number of the next step. It follows the current one unless a machine has stood still and the walks are whole strides apart: then it is the number that is due, or
+    /// the one beside it for the same foot.
+    fn next_number(&self, generator: &GaitGenerator) -> u16 {
+        let natural = generator.progress().0.wrapping_add(1);
+        let last = self.queue.newest().or(self.made.as_ref());
+        let Some(last) = last.filter(|_| !generator.comes_to_rest()) else {
+            return natural;
+        };
+        let since_secs = self.now_secs - self.clock.due_secs(last.at_secs);
+        let since_frames = since_secs * f64::from(generator.frame_rate_hz);
+        let steps =
+            since_frames / f64::from(generator.frames_since(0.0)) + f64::from(last.planned.share());
+        if steps.abs() > FRESH_STEPS {
+            return natural;
+        }
+        let due = last
+            .planned
+            .number
+            .wrapping_add_signed(steps.round() as i16);
+        let pairs = natural.wrapping_sub(due).cast_signed() / 2;
+        natural.wrapping_sub_signed(2 * pairs)
     }
 
     /// Steps to the place of the resting sender, if the walk came to rest beside it.

@@ -121,6 +121,8 @@ pub(crate) struct Link {
     sent_secs: f32,
     chance: u32,
     pub(crate) joined: bool,
+    /// Machines that stand still, as while they load: here, there.
+    pub(crate) pauses: [bool; 2],
     pub(crate) refused: usize,
 }
 
@@ -154,6 +156,7 @@ impl Link {
             sent_secs: 0.0,
             chance: seed as u32 * 2 + 1,
             joined: true,
+            pauses: [false; 2],
             refused: 0,
         }
     }
@@ -169,6 +172,19 @@ impl Link {
     /// Lets a frame pass on both machines.
     pub(crate) fn frame(&mut self, controls: &Controls) {
         self.secs += DT;
+        let [here, there] = self.pauses;
+        if !here {
+            self.frame_here(controls);
+        }
+        if !there {
+            self.frames_there();
+        }
+        if there || !self.joined {
+            self.their_secs = self.secs;
+        }
+    }
+
+    fn frame_here(&mut self, controls: &Controls) {
         self.here.generator.step(DT, controls, &mut self.here.pose);
         self.here.show(self.secs, false);
         self.sender.step(DT);
@@ -184,6 +200,9 @@ impl Link {
                     .push_back((self.secs + self.delay_secs + late, update));
             }
         }
+    }
+
+    fn frames_there(&mut self) {
         while self.their_secs + self.their_dt <= self.secs && self.joined {
             self.their_secs += self.their_dt;
             while let Some((at, update)) = self.under_way.front().copied() {
@@ -207,9 +226,6 @@ impl Link {
             }
             self.there
                 .show(self.their_secs, matches!(followed, Followed::Anew(_)));
-        }
-        if !self.joined {
-            self.their_secs = self.secs;
         }
     }
 

@@ -329,6 +329,29 @@ fn whoever_hears_nothing_more_comes_to_a_stand() {
     );
 }
 
+/// A machine that loads something stands still for two seconds, and its walkers with it.
+#[test]
+fn who_stood_still_finds_the_steps_again() {
+    for (seed, speed_mps) in [(0, 1.3), (1, 0.8), (2, 3.0)] {
+        for pauses in [[true, false], [false, true]] {
+            let mut link = Link::new(seed);
+            let controls = Controls {
+                turn_rate_radps: 0.4,
+                ..walking(speed_mps)
+            };
+            link.walk(&controls, 5.0);
+            assert_eq!(anew(&link), 1);
+            link.pauses = pauses;
+            link.walk(&controls, 2.0);
+            link.pauses = [false; 2];
+            let back = link.secs;
+            link.walk(&controls, 10.0);
+            assert_same_steps(&link, back + 2.0, 10);
+            assert_eq!(anew(&link), 2, "at {speed_mps} m/s, {pauses:?}");
+        }
+    }
+}
+
 /// A saved follower goes on bit for bit, in the middle of a step that leads it back to its place, and its sender too.
 #[test]
 fn a_state_holds_what_a_follower_is_made_of() {
