@@ -251,10 +251,17 @@ impl WalkFollower {
                 let ends = self.now_secs + f64::from(generator.frames_left()) / rate;
                 ends - self.clock.due_secs(next.at_secs)
             }
-            (_, Some(made)) if made.planned.number == number => {
+            (_, Some(made)) => {
+                // Where a machine has stood still, the walks may be a step apart.
+                let steps = f64::from(made.planned.steps_from(number));
+                let ahead = f64::from(generator.frames_since(made.planned.share()))
+                    - steps * f64::from(generator.frames_since(0.0) + generator.frames_left());
                 let since = self.now_secs - self.clock.due_secs(made.at_secs);
-                let frames = generator.frames_since(made.planned.share());
-                since - f64::from(frames) / rate
+                if steps.abs() <= FRESH_STEPS {
+                    since - ahead / rate
+                } else {
+                    0.0
+                }
             }
             _ => 0.0,
         };

@@ -329,25 +329,29 @@ fn whoever_hears_nothing_more_comes_to_a_stand() {
     );
 }
 
-/// A machine that loads something stands still for two seconds, and its walkers with it.
+/// A machine that loads something stands still, and its walkers with it. Others are ahead of it by a step, which they make good by slower ones, or by more, and begin anew.
 #[test]
 fn who_stood_still_finds_the_steps_again() {
-    for (seed, speed_mps) in [(0, 1.3), (1, 0.8), (2, 3.0)] {
-        for pauses in [[true, false], [false, true]] {
+    let speeds = [(0, 1.3), (1, 0.8), (2, 3.0)];
+    let machines = [[true, false], [false, true]];
+    for (pauses, secs) in machines
+        .map(|pauses| [0.7, 2.0].map(|secs| (pauses, secs)))
+        .concat()
+    {
+        for (seed, speed_mps) in speeds {
             let mut link = Link::new(seed);
             let controls = Controls {
                 turn_rate_radps: 0.4,
                 ..walking(speed_mps)
             };
             link.walk(&controls, 5.0);
-            assert_eq!(anew(&link), 1);
             link.pauses = pauses;
-            link.walk(&controls, 2.0);
+            link.walk(&controls, secs);
             link.pauses = [false; 2];
             let back = link.secs;
-            link.walk(&controls, 10.0);
-            assert_same_steps(&link, back + 2.0, 10);
-            assert_eq!(anew(&link), 2, "at {speed_mps} m/s, {pauses:?}");
+            link.walk(&controls, 14.0);
+            assert_same_steps(&link, back + 6.0, 10);
+            assert!(anew(&link) <= 2, "at {speed_mps} m/s, {secs} s");
         }
     }
 }
