@@ -5,6 +5,7 @@ mod amended;
 use super::clock::ReplicaClock;
 use super::gate::Gate;
 use super::led::Beginning;
+use super::numbering::{FRESH_STEPS, next_number};
 use super::queue::{Planning, Queue};
 use super::update::{Planned, WalkUpdate};
 use super::{ReplicaError, WalkIdentity};
@@ -23,9 +24,6 @@ const LOST_M: f32 = 0.75;
 const LOST_HEIGHT_M: f32 = 1.5;
 const LOST_RAD: f32 = 1.6;
 const LOST_SECS: f64 = 1.5;
-
-/// Time from the last received step, in steps, up to which it determines the number that is due: later, the walk itself knows better.
-const FRESH_STEPS: f64 = 3.0;
 
 /// Errors beyond which a resting walker steps to its place, metres and radians, and the time of rest before it does, seconds.
 const OFF_M: f32 = 0.04;
@@ -246,22 +244,19 @@ impl WalkFollower {
         }
         let rate = f64::from(generator.frame_rate_hz);
         let (number, _) = generator.progress();
+        let steps_from = |made: &Planning| f64::from(made.planned.steps_from(number));
         let late = match (self.queue.next(), &self.made) {
             (Some(next), _) if next.planned.steps_from(number) == 1 => {
                 let ends = self.now_secs + f64::from(generator.frames_left()) / rate;
                 ends - self.clock.due_secs(next.at_secs)
             }
-            (_, Some(made)) => {
+            (_, Some(made)) if steps_from(made).abs() <= FRESH_STEPS => {
                 // Where a machine has stood still, the walks may be a step apart.
-                let steps = f64::from(made.planned.steps_from(number));
+                let whole = generator.frames_since(0.0) + generator.frames_left();
                 let ahead = f64::from(generator.frames_since(made.planned.share()))
-                    - steps * f64::from(generator.frames_since(0.0) + generator.frames_left());
+                    - steps_from(made) * f64::from(whole);
                 let since = self.now_secs - self.clock.due_secs(made.at_secs);
-                if steps.abs() <= FRESH_STEPS {
-                    since - ahead / rate
-                } else {
-                    0.0
-                }
+                since - ahead / rate
             }
             _ => 0.0,
         };
@@ -276,7 +271,11 @@ impl WalkFollower {
         shared_from_start: &GroundTransform,
     ) -> bool {
         let rests = generator.comes_to_rest();
-        let natural = self.next_number(generator);
+        let natural = if rests {
+            generator.progress().0.wrapping_add(1)
+        } else {
+            self.next_number(generator)
+        };
         let due = |next: &&Planning| self.clock.due_secs(next.at_secs) <= self.now_secs;
         let next = self.queue.next().copied();
         if rests {
@@ -327,27 +326,17 @@ impl WalkFollower {
         true
     }
 
-    /// Number of the next step. It follows the current one unless a machine has stood still and the walks are whole strides apart: then it is the number that is due, or
-    /// the one beside it for the same foot.
+    /// Returns the number of the next step of a walk that goes on.
     fn next_number(&self, generator: &GaitGenerator) -> u16 {
         let natural = generator.progress().0.wrapping_add(1);
-        let last = self.queue.newest().or(self.made.as_ref());
-        let Some(last) = last.filter(|_| !generator.comes_to_rest()) else {
+        let Some(last) = self.queue.newest().or(self.made.as_ref()) else {
             return natural;
         };
         let since_secs = self.now_secs - self.clock.due_secs(last.at_secs);
         let since_frames = since_secs * f64::from(generator.frame_rate_hz);
-        let steps =
-            since_frames / f64::from(generator.frames_since(0.0)) + f64::from(last.planned.share());
-        if steps.abs() > FRESH_STEPS {
-            return natural;
-        }
-        let due = last
-            .planned
-            .number
-            .wrapping_add_signed(steps.round() as i16);
-        let pairs = natural.wrapping_sub(due).cast_signed() / 2;
-        natural.wrapping_sub_signed(2 * pairs)
+        let step_frames = f64::from(generator.frames_since(0.0));
+        let steps_since = since_frames / step_frames + f64::from(last.planned.share());
+        next_number(natural, last.planned.number, steps_since)
     }
 
     /// Steps to the place of the resting sender, if the walk came to rest beside it.

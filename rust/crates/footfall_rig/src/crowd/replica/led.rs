@@ -4,6 +4,7 @@ use super::following::Following;
 use super::start::Start;
 use super::step::StepUpdate;
 use footfall_core::rotation::wrap_angle;
+use footfall_synth::replica::next_number;
 use footfall_synth::{Controls, CrowdWalker, GroundTransform, LedAim, LedStep};
 
 /// Most steps that wait; a further one drops the oldest.
@@ -15,9 +16,6 @@ const IN_TIME_SECS: f64 = 0.4;
 
 /// Greatest distance, in steps, of a received step from the current one for a comparison of their times: without updates a walk may be whole steps ahead or late.
 const NEAR_STEPS: u16 = 2;
-
-/// Greatest time from the last received step, in steps, at which it says which step is on now: later, the walk itself knows better.
-const FRESH_STEPS: f64 = 3.0;
 
 /// Distance, in metres, and delay, in seconds, beyond which a walk begins again at its place.
 const LOST_M: f32 = 5.0;
@@ -205,22 +203,15 @@ impl LedWalker {
         })
     }
 
-    /// Number of the next step. It follows the current one unless a machine has stood still and the walks are whole strides apart: then it is the number that is due, or
-    /// the one beside it for the same foot. Otherwise no received step would be taken again.
+    /// Number of the next step of a walk that goes on.
     fn next_number(&self, walker: &CrowdWalker, now: &Now<'_>) -> u16 {
         let natural = walker.number().wrapping_add(1);
         let Some(last) = self.last.filter(|last| !last.rests) else {
             return natural;
         };
         let own_secs = walker.secs_of_step() + walker.secs_to_next_step();
-        let late_steps = now.late_secs(&last) / f64::from(now.start.size.sqrt() * own_secs);
-        if late_steps.abs() > FRESH_STEPS {
-            return natural;
-        }
-        let due = last.number.wrapping_add_signed(late_steps.round() as i16);
-        // Feet keep their turns.
-        let pairs = natural.wrapping_sub(due).cast_signed() / 2;
-        natural.wrapping_sub_signed(2 * pairs)
+        let step_secs = f64::from(now.start.size.sqrt() * own_secs);
+        next_number(natural, last.number, now.late_secs(&last) / step_secs)
     }
 
     /// The step with which a walker leaves its rest, if it is time.
