@@ -16,8 +16,6 @@ const QUIET_SECS := 5.0
 ## Limit of the data that is sent to each peer. 100 bytes per second and walker repeat every step as often as a lossy network needs; with less, steps of walkers that go
 ## straight on are sent less often, and later steps walk off the error.
 @export_range(1000, 1000000, 1000, "or_greater", "suffix:B/s") var bytes_per_second := 131072
-## If [code]true[/code], ENet sends all unreliable messages of this machine, those of the game included. Otherwise it drops them while replies are late, and walkers lose their way.
-@export var sends_all := true
 
 var _crowd: GaitCrowd3D
 var _asks_in := 0.0
@@ -35,9 +33,6 @@ func _ready() -> void:
 		# Without a viewer: no poses, no skeletons.
 		_crowd.visible = false
 	multiplayer.peer_disconnected.connect(_leave)
-	multiplayer.peer_connected.connect(_meet)
-	for peer in multiplayer.get_peers():
-		_meet(peer)
 
 
 func _process(delta: float) -> void:
@@ -76,11 +71,6 @@ func _send() -> void:
 				_introduce.rpc_id(peer, message.bytes)
 			else:
 				_step.rpc_id(peer, message.bytes)
-
-
-func _meet(peer: int) -> void:
-	if sends_all:
-		GaitEnet.send_all(multiplayer, peer)
 
 
 func _leave(peer: int) -> void:

@@ -83,5 +83,5 @@ func _machine(title: String) -> Node:
 
 func _synchronizer(path: String, sends_all: bool) -> Node:
 	var synchronizer: Node = (load(path) as PackedScene).instantiate()
-	synchronizer.set(&"sends_all", sends_all)
+	synchronizer.get_node(^"Enet").set(&"sends_all", sends_all)
 	return synchronizer
