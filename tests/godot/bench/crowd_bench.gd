@@ -120,7 +120,7 @@ func _making(figures: Dictionary) -> void:
 	for index: int in _instances:
 		places.append(Vector3(index % 100 - 50, 0, index / 100 - 50))
 	var begin := Time.get_ticks_usec()
-	crowd.add_agents(places, [])
+	var added: PackedInt32Array = crowd.add_agents(places, [])
 	figures["add_agents_ms"] = (Time.get_ticks_usec() - begin) / 1000.0
 	var usual := times.size()
 	while crowd.is_making():
@@ -131,6 +131,9 @@ func _making(figures: Dictionary) -> void:
 	for frame: int in 120:
 		await get_tree().process_frame
 	figures["made_longest_ms"] = _longest(times)
+	begin = Time.get_ticks_usec()
+	crowd.remove_agents(added)
+	figures["remove_agents_ms"] = (Time.get_ticks_usec() - begin) / 1000.0
 	for node: Node in [before, crowd, after]:
 		node.queue_free()
 

@@ -6,8 +6,8 @@ const PROUD := preload("res://addons/footfall/models/proud.footstyle")
 const SAD := preload("res://addons/footfall/models/sad.footstyle")
 const DT := 1.0 / 60.0
 const MANY := 10_000
-## Longest time that a crowd may take of a frame, milliseconds of its thread.
-const FRAME_SHARE_MS := 4.0
+## Walkers that begin in one frame at most: a crowd's own limit.
+const MOST_A_FRAME := 256
 
 
 func _advance(crowd: GaitCrowd3D, frames: int) -> void:
@@ -161,74 +161,34 @@ func test_a_rig_that_is_no_use_is_a_problem() -> void:
 	crowd.free()
 
 
-## Working time of this thread, as the system's scheduler counts it from time to time: that of others does not count.
-func _worked_ms() -> float:
-	var status := FileAccess.open("/proc/thread-self/schedstat", FileAccess.READ)
-	return status.get_line().get_slice(" ", 0).to_int() / 1e6 if status else 0.0
-
-
-## A clock that stands still while this thread waits for a processor, where the system tells.
-func _clock_ms() -> float:
-	var status := FileAccess.open("/proc/thread-self/schedstat", FileAccess.READ)
-	var waited := status.get_line().get_slice(" ", 1).to_int() / 1e6 if status else 0.0
-	return Time.get_ticks_usec() / 1000.0 - waited
-
-
 func _styled_crowd() -> GaitCrowd3D:
 	return add_crowd(0, func(made: GaitCrowd3D) -> void:
 		made.playing = true
 		made.styles = [PROUD, SAD] as Array[GaitStyle])
 
 
-## Lets a crowd be made; returns by how much the longest work of a frame until then exceeds what a frame takes once they all walk.
-func _making_ms(crowd: GaitCrowd3D) -> float:
-	var frames := 0
-	var most_ms := 0.0
-	var worked_ms := _worked_ms()
-	while crowd.is_making() and frames < 6000:
-		await get_tree().process_frame
-		frames += 1
-		most_ms = maxf(most_ms, _worked_ms() - worked_ms)
-		worked_ms = _worked_ms()
-	check(frames > 5, "it takes several frames: %d" % frames)
-	var usual: Array[float] = []
-	for frame: int in 31:
-		worked_ms = _worked_ms()
-		await get_tree().process_frame
-		usual.append(_worked_ms() - worked_ms)
-	usual.sort()
-	return most_ms - usual[15]
-
-
+## How long frames take is measured, not tested: `cargo xtask bench-crowd`.
 func test_ten_thousand_are_made_in_the_background() -> void:
 	var crowd := _styled_crowd()
-	var came := {}
+	var came := PackedInt32Array()
+	var most := [0]
 	crowd.agents_ready.connect(func(agents: PackedInt32Array) -> void:
-		for id: int in agents:
-			came[id] = true)
+		came.append_array(agents)
+		most[0] = maxi(most[0], agents.size()))
 	for frame: int in 5:
 		await get_tree().process_frame
-	var places := _grid(MANY)
-	var begin := _clock_ms()
-	var ids: PackedInt32Array = crowd.add_agents(places, [])
-	var added_ms := _clock_ms() - begin
+	var ids: PackedInt32Array = crowd.add_agents(_grid(MANY), [])
 	check_equal(ids, PackedInt32Array(range(MANY)), "ids come at once")
 	check_equal(crowd.get_agent_count(), MANY, "and count at once")
 	check(crowd.has_agent(ids[-1]), "the last is there")
 	check(crowd.is_making(), "they are being made")
-	check_below(added_ms, FRAME_SHARE_MS, "adding, ms")
-	var most_ms: float = await _making_ms(crowd)
-	# A busy machine lengthens frames and shortens none: what every one of several crowds takes is ours.
-	for attempt: int in 4:
-		if most_ms < FRAME_SHARE_MS:
-			break
-		var other := _styled_crowd()
-		other.add_agents(places, [])
-		most_ms = minf(most_ms, await _making_ms(other))
-		other.free()
-	print("ten thousand more: added in %.1f ms, at most %.1f ms of a frame" % [added_ms, most_ms])
-	check_below(most_ms, FRAME_SHARE_MS, "making in a frame, ms")
-	check_equal(came.size(), MANY, "everybody was told of")
+	var frames := 0
+	while crowd.is_making() and frames < 6000:
+		await get_tree().process_frame
+		frames += 1
+	check_below(most[0], MOST_A_FRAME + 1, "walkers that begin in a frame")
+	came.sort()
+	check_equal(came, ids, "everybody was told of, once")
 	for frame: int in 60:
 		await get_tree().process_frame
 	var moved := 0
@@ -236,11 +196,7 @@ func test_ten_thousand_are_made_in_the_background() -> void:
 	for index: int in MANY:
 		moved += int(now[index] != Vector3(index % 100, 0, index / 100))
 	check(moved > 0.95 * MANY, "they walk: %d" % moved)
-	begin = _clock_ms()
 	crowd.remove_agents(ids)
-	var removed_ms := _clock_ms() - begin
-	print("and gone in %.1f ms" % removed_ms)
-	check_below(removed_ms, FRAME_SHARE_MS, "removing, ms")
 	check_equal(crowd.get_agent_count(), 0, "nobody is left")
 	crowd.free()
 
