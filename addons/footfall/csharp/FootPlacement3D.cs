@@ -140,7 +140,7 @@ namespace Footfall
             set => Native.Set(PropertyName.AdjustFootholds, value);
         }
 
-        /// <summary>If <c>true</c>, a <see cref="GaitGenerator3D"/> beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), starting one step ahead.</summary>
+        /// <summary>If <c>true</c>, a <see cref="GaitGenerator3D"/> beside this node moves more slowly uphill, downhill and on stairs, as people do (Tobler's hiking function, down to 0.45 of its speed), starting one step ahead. A runner walks on stairs and on grades above a quarter.</summary>
         public bool AdaptSpeed
         {
             get => Native.Get(PropertyName.AdaptSpeed).AsBool();

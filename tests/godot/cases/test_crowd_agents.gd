@@ -167,7 +167,7 @@ func _styled_crowd() -> GaitCrowd3D:
 		made.styles = [PROUD, SAD] as Array[GaitStyle])
 
 
-## How long frames take is measured, not tested: `cargo xtask bench-crowd`.
+## The time that frames take is measured by `cargo xtask bench-crowd`.
 func test_ten_thousand_are_made_in_the_background() -> void:
 	var crowd := _styled_crowd()
 	var came := PackedInt32Array()

@@ -70,6 +70,22 @@ func test_feet_stand_on_a_slope_uphill_and_downhill() -> void:
 		await get_tree().process_frame
 
 
+func test_runners_run_over_hills_and_walk_where_it_is_steep() -> void:
+	for degrees: float in [6.0, -8.0, 20.0, -20.0]:
+		var ground := _ground(_slope(degrees), Vector3(200, 1, 200))
+		var walker := _walker(func(runner: Walker) -> void: runner.gait.speed = 3.5)
+		var placement := _placement(walker)
+		await get_tree().physics_frame
+		walker.walk(120)
+		var flying := [0]
+		walker.walk(180, func() -> void: flying[0] += int(not placement.is_foot_planted(&"left") and not placement.is_foot_planted(&"right")))
+		var runs := absf(degrees) < 15.0
+		check_equal(walker.gait.get_current_gait(), &"run" if runs else &"walk", "gait at %.0f°" % degrees)
+		check(flying[0] > 30 if runs else flying[0] == 0, "frames in the air at %.0f°: %d" % [degrees, flying[0]])
+		walker.free()
+		ground.free()
+
+
 func test_standing_feet_do_not_slip_on_a_slope() -> void:
 	var ground := _ground(_slope(15))
 	var walker := _walker()

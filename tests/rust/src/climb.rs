@@ -46,6 +46,8 @@ pub struct Climb {
     pub origin: Origin,
     /// True when the placer knows contacts and landings.
     pub announced: bool,
+    /// True when it may run where it is not steep, as beside `FootPlacement3D`. Otherwise even legs that are short enough to run at this speed walk.
+    pub runs: bool,
     /// Of the walker.
     pub seed: u64,
 }
@@ -69,6 +71,7 @@ impl Climb {
             distance_m,
             origin: Origin::Follows,
             announced: true,
+            runs: false,
             seed: 7,
         }
     }
@@ -85,12 +88,6 @@ impl Climb {
         let skeleton = Skeleton::standard().scaled(self.body);
         let mut walker = walker(&skeleton, self.seed);
         walker.carrier = self.origin;
-        let controls = Controls {
-            speed_mps: self.speed_mps,
-            // Grades are walked, as beside `FootPlacement3D`, even with legs short enough to run at this speed.
-            gait: GaitChoice::Walk,
-            ..Controls::STAND
-        };
         let mut watcher = Watcher {
             leg: skeleton.mean_leg_length(),
             between: from..from + way.length(),
@@ -100,6 +97,16 @@ impl Climb {
         let mut between = 0;
         let longest = ((10.0 + 4.0 * goal) / DT) as usize;
         for frame in 0..longest {
+            let may_run = self.runs && !walker.placer.is_steep();
+            let controls = Controls {
+                speed_mps: self.speed_mps,
+                gait: if may_run {
+                    GaitChoice::Auto
+                } else {
+                    GaitChoice::Walk
+                },
+                ..Controls::STAND
+            };
             walker.climb(DT, controls, &mut terrain, self.announced);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);

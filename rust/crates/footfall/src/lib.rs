@@ -40,7 +40,7 @@
 //!
 //! ```
 //! use footfall::body::Pose;
-//! use footfall::gait::{Controls, GaitGenerator};
+//! use footfall::gait::{Controls, GaitChoice, GaitGenerator};
 //! use footfall::glam::Vec3;
 //! use footfall::ground::{FootPlacer, Frame, Ground, PlacementInput, Terrain};
 //!
@@ -61,9 +61,11 @@
 //! impl Character {
 //!     /// Advances one frame; returns the character's place in the world. `pose` is the pose to show there.
 //!     fn frame(&mut self, dt_secs: f32, speed_mps: f32, terrain: &mut impl Terrain) -> Frame {
-//!         // People slow down uphill, and lean into it.
+//!         // People slow down uphill, lean into it, and do not run up stairs.
 //!         self.walker.set_grade(self.placer.way_grade());
-//!         let controls = Controls { speed_mps: speed_mps * self.placer.pace(), ..Controls::STAND };
+//!         let gait = if self.placer.is_steep() { GaitChoice::Walk } else { GaitChoice::Auto };
+//!         let speed_mps = speed_mps * self.placer.pace();
+//!         let controls = Controls { speed_mps, gait, ..Controls::STAND };
 //!         self.walker.step(dt_secs, &controls, &mut self.pose);
 //!         // The character rises and falls with the ground below its feet; a physics body may do this instead.
 //!         self.height += (1.0 - (-dt_secs / 0.12).exp()) * self.placer.ground_offset_m();

@@ -83,8 +83,8 @@ pub(crate) struct FootPlacement3D {
     #[init(val = true)]
     adjust_footholds: bool,
 
-    /// If `true`, a `GaitGenerator3D` beside this node walks more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
-    /// function, down to 0.45 of its speed), starting one step ahead.
+    /// If `true`, a `GaitGenerator3D` beside this node moves more slowly uphill, downhill and on stairs, as people do (Tobler's hiking
+    /// function, down to 0.45 of its speed), starting one step ahead. A runner walks on stairs and on grades above a quarter.
     #[export]
     #[init(val = true)]
     adapt_speed: bool,

@@ -240,6 +240,8 @@ pub(crate) struct GaitGenerator3D {
     /// Share of the speed that is left on the ground at hand: 1 on level ground.
     #[init(val = 1.0)]
     slowed: f32,
+    /// True on ground on which nobody runs.
+    climbs: bool,
     replica: Replica,
     auto_detail: AutoDetail,
     base: Base<SkeletonModifier3D>,

@@ -5,9 +5,10 @@
 //! supports a foot may move: its foothold moves along.
 //!
 //! Modules in suggested reading order: `config`, `frame`, `terrain`, `correction`, `lie`, `foothold`, `profile`, `aim`, `landings`,
-//! `contact`, `foot`, `wall`, `guard`, `swing`, `pelvis`, `carry`.
+//! `contact`, `foot`, `wall`, `guard`, `way`, `swing`, `pelvis`, `arrival`, `carry`.
 
 mod aim;
+mod arrival;
 mod carry;
 mod config;
 mod contact;
@@ -24,6 +25,7 @@ mod profile;
 mod swing;
 mod terrain;
 mod wall;
+mod way;
 
 use crate::leg::{FootTarget, Leg};
 use crate::rocker::{RockerFoot, foot_attitude, settled_pitch};
@@ -75,6 +77,8 @@ pub struct FootPlacer {
     /// Grade of the ground to which the step under way leads, and the foot that takes it.
     grade_ahead: f32,
     aimed: Option<usize>,
+    /// Sole that stood last, in the world.
+    stood_at: Option<Vec3>,
     memory: Option<Memory>,
 }
 
@@ -111,6 +115,7 @@ impl FootPlacer {
             grade: 0.0,
             grade_ahead: 0.0,
             aimed: None,
+            stood_at: None,
             memory: None,
         }
     }
@@ -128,6 +133,7 @@ impl FootPlacer {
         self.grade = 0.0;
         self.grade_ahead = 0.0;
         self.aimed = None;
+        self.stood_at = None;
     }
 
     /// The feet after the last step, left and right.
@@ -194,6 +200,11 @@ impl FootPlacer {
             targets[index] = foot.step(&mut scene, rocker, &animated[index], input.airborne);
         }
         let soles = [0, 1].map(|index| floor.child(&self.feet[index].sole));
+        for (foot, sole) in self.feet.iter().zip(&soles) {
+            if foot.mode == Mode::Locked {
+                self.stood_at = Some(sole.position);
+            }
+        }
         self.measure_grade(dt_secs);
         let moment = Moment {
             dt_secs,

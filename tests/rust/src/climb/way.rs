@@ -1,5 +1,7 @@
 //! Ground to climb.
 
+use core::f32::consts::{PI, TAU};
+
 /// Kinds of ground to walk over.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Way {
@@ -12,10 +14,19 @@ pub enum Way {
         /// Depth of a tread, metres.
         run: f32,
     },
-    /// A ramp of this slope, 3 m long, down where negative.
+    /// A ramp, down where its slope is negative.
     Ramp {
         /// Rise by run.
         slope: f32,
+        /// Distance from its foot to its top, over the ground, metres.
+        length: f32,
+    },
+    /// Rounded hills that begin and end level, for 24 m.
+    Hills {
+        /// Height of the highest above the lowest place, metres.
+        height: f32,
+        /// Seed of the hills.
+        seed: u32,
     },
     /// Blocks of 45 cm, up to this high, for 9 m.
     Blocks {
@@ -35,7 +46,8 @@ impl Way {
         match self {
             Self::Level => 0.0,
             Self::Stairs { rise, run } => ((z / run).floor() + 1.0).clamp(0.0, STEPS) * rise,
-            Self::Ramp { slope } => z.clamp(0.0, self.length()) * slope,
+            Self::Ramp { slope, length } => z.clamp(0.0, length) * slope,
+            Self::Hills { height, seed } => height * hills(x, z / self.length(), seed),
             Self::Blocks { height, seed } => {
                 if z < 0.0 || z > self.length() {
                     return 0.0;
@@ -55,8 +67,25 @@ impl Way {
         match self {
             Self::Level => 6.0,
             Self::Stairs { run, .. } => STEPS * run,
-            Self::Ramp { .. } => 3.0,
+            Self::Ramp { length, .. } => length,
+            Self::Hills { .. } => 24.0,
             Self::Blocks { .. } => 9.0,
         }
     }
+}
+
+/// Heights of waves that cross each other, 0 to 1, at a part of the way.
+fn hills(x: f32, part: f32, seed: u32) -> f32 {
+    let part = part.clamp(0.0, 1.0);
+    let waves: f32 = [1.0, 2.3, 3.7]
+        .into_iter()
+        .zip(1_u32..)
+        .map(|(waves, turn)| {
+            let phase =
+                (seed.wrapping_mul(turn).wrapping_mul(0x9E37_79B9) >> 8) as f32 / 16_777_216.0;
+            (TAU * (waves * part + phase + 0.02 * waves * x)).sin() / waves
+        })
+        .sum();
+    // Level at both ends.
+    (PI * part).sin().powi(2) * (0.5 + 0.27 * waves)
 }

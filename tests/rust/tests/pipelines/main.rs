@@ -9,6 +9,7 @@ mod confidence;
 mod evaluator;
 mod golden;
 mod handover;
+mod hills;
 mod legs;
 mod model_versions;
 mod moves;

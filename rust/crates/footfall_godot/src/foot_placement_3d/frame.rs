@@ -57,7 +57,8 @@ impl FootPlacement3D {
             } else {
                 1.0
             };
-            generator.slow_down(slowed);
+            let is_steep = self.adapt_speed && influence > 0.0 && session.placer.is_steep();
+            generator.slow_down(slowed, is_steep);
             generator.set_grade(influence * session.placer.way_grade());
             if session.placer.pace() < 1.0 {
                 // On a grade its foothold has been chosen.

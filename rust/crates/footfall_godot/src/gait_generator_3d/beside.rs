@@ -47,9 +47,10 @@ impl GaitGenerator3D {
         }
     }
 
-    /// Walks at this share of the speed from the next step on.
-    pub(crate) fn slow_down(&mut self, share: f32) {
+    /// Moves at this share of the speed from the next step on, and walks where a run is too steep.
+    pub(crate) fn slow_down(&mut self, share: f32, is_steep: bool) {
         self.slowed = share;
+        self.climbs = is_steep;
     }
 
     /// Walks on on a way of this grade.

@@ -184,8 +184,7 @@ impl GaitGenerator3D {
             speed_mps: self.speed as f32 * self.slowed,
             turn_rate_radps: self.turn_rate as f32,
             direction_rad: self.direction as f32,
-            // A grade ahead is walked.
-            gait: if self.slowed < 1.0 {
+            gait: if self.climbs {
                 GaitChoice::Walk
             } else {
                 self.gait.into()

@@ -1,7 +1,6 @@
 //! Height of the pelvis: above the ground under it, within the reach of the legs.
 
 use crate::leg::{FootTarget, reach_height};
-use crate::placement::correction::Correction;
 use crate::placement::foot::{Animated, Foot, MAX_PITCH, Mode, Scene};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
@@ -12,14 +11,11 @@ use footfall_core::{Joint, Pose, Side};
 use glam::{Quat, Vec3};
 
 /// Greatest extension of legs by the pelvis, as a share of their length, unless the animation extends them further.
-const EASY_EXTENSION: f32 = 0.98;
+pub(super) const EASY_EXTENSION: f32 = 0.98;
 /// Extension of its leg beyond which a standing foot raises its heel, unless the animation extends the leg further.
 const FIRM_EXTENSION: f32 = 0.995;
 /// Greatest extension of a leg, as a share of its length.
 const MAX_EXTENSION: f32 = 0.999;
-/// Typical duration of a step, and the least time over which its rise is spread, seconds.
-const STEP_SECS: f32 = 0.6;
-const LEAST_STEP_SECS: f32 = 0.2;
 /// Height below which a foot without a known landing is about to land, metres.
 const SOON_M: f32 = 0.15;
 /// Distance of the soles beyond which they give the grade, metres, and the time within which the grade follows, seconds.
@@ -31,14 +27,6 @@ pub(super) struct Moment<'a> {
     pub(super) dt_secs: f32,
     pub(super) input: &'a PlacementInput,
     pub(super) animated: &'a [Animated; 2],
-}
-
-/// Place of the pelvis when the next foot lands.
-struct Arrival {
-    /// Above the animation's floor, metres, and how fast it rises then, m/s.
-    offset_m: f32,
-    rise_mps: f32,
-    secs: f32,
 }
 
 impl FootPlacer {
@@ -101,8 +89,8 @@ impl FootPlacer {
         pose.root_position = hips;
     }
 
-    /// Ends the contact of a foot behind the body that cannot stay where it stands, heel up, unless it pulls the pelvis down, once the
-    /// other foot stands.
+    /// Ends the contact of a foot behind the body that cannot stay where it stands, heel up, unless it pulls the pelvis down: once the
+    /// other foot stands, or in a run.
     pub(super) fn let_go<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
@@ -113,11 +101,15 @@ impl FootPlacer {
         let hips = pose.root_position + Vec3::Y * (self.pelvis.value - scene.floor_m());
         let stand =
             [0, 1].map(|index| self.feet[index].mode == Mode::Locked && animated[index].contact);
+        let takes_off = [0, 1].map(|index| {
+            let landing = animated[1 - index].landing;
+            landing.is_some_and(|landing| self.is_off(index, &landing))
+        });
         for (index, animated) in animated.iter_mut().enumerate() {
             let foot = &self.feet[index];
             let reach = FIRM_EXTENSION * self.leg_lengths[index];
             let hip = hips + hips_rotation * self.hips_from_hip[index];
-            let short = stand == [true; 2]
+            let short = (stand == [true; 2] || stand[index] && takes_off[index])
                 && foot
                     .highest_ankle(scene, &self.rockers[index], animated.pitch)
                     .map(|ankle| ankle - hip)
@@ -141,71 +133,6 @@ impl FootPlacer {
     fn stretch(&self, index: usize, animated: &[Animated; 2], hips: Vec3, rotation: Quat) -> f32 {
         let hip = hips + rotation * self.hips_from_hip[index];
         animated[index].foot.ankle.distance(hip) / self.leg_lengths[index]
-    }
-
-    /// Place of the pelvis at the next landing, for a walk that knows it.
-    fn arrival(
-        &self,
-        moment: &Moment<'_>,
-        terrain: &mut impl Terrain,
-        hips_rotation: Quat,
-    ) -> Option<Arrival> {
-        let (input, animated) = (moment.input, moment.animated);
-        let floor = input.world_from_floor;
-        let index = input.landings.iter().position(Option::is_some)?;
-        let landing = input.landings[index]?;
-        let plan = self.feet[index].plan?;
-        let sole = floor.local(&plan.foothold.world_from_sole(terrain)?);
-        let other = 1 - index;
-        let standing = &self.feet[other];
-        if standing.mode != Mode::Locked {
-            return None;
-        }
-        let plane = |sole: &Frame| plane_height(sole.position, sole.up(), landing.hips);
-        let mut offset = 0.5 * (plane(&sole) + plane(&standing.sole));
-        let corrections = [
-            (
-                index,
-                landing.flat,
-                Correction::between(&landing.flat, &sole),
-            ),
-            (other, animated[other].flat, standing.correction),
-        ];
-        for (leg, flat, correction) in corrections {
-            let ankle = landing.ankles[leg];
-            let hip = hips_rotation * self.hips_from_hip[leg];
-            let limit = |ankle: Vec3| {
-                let length = self.leg_lengths[leg];
-                reach_height(landing.hips, hip, ankle, length, EASY_EXTENSION)
-                    .map_or(0.0, |height| height - landing.hips.y)
-            };
-            // In a landing on the ball of the foot the ankle is above the flat sole.
-            let on_ball = leg == index && plan.foothold.on_ball;
-            let above = if on_ball {
-                Vec3::Y * self.rockers[leg].ankle_height()
-            } else {
-                ankle - flat.position
-            };
-            let real = flat.position + correction.shift + correction.tilt * above;
-            // What the leg lacks on the animation's own floor is the animation's affair.
-            offset = offset.min(limit(real) - limit(ankle).min(0.0));
-        }
-        let floor_height = floor.position.dot(floor.up());
-        let rise = sole.position.y - standing.sole.position.y;
-        let secs = landing.secs.max(LEAST_STEP_SECS);
-        // It passes a landing at the pace of the way there and of that to come, and turns where they differ.
-        let coming = 0.5 * (rise + plan.next_rise_m) / STEP_SECS;
-        let going = (floor_height + offset - self.pelvis.value) / secs;
-        let rise_mps = if coming * going > 0.0 {
-            coming.signum() * coming.abs().min(going.abs())
-        } else {
-            0.0
-        };
-        Some(Arrival {
-            offset_m: offset,
-            rise_mps,
-            secs: landing.secs,
-        })
     }
 
     /// Greatest height of the pelvis above the animation's floor with legs that are not stretched, where the place of the next landing is

@@ -10,6 +10,7 @@ use crate::placement::frame::Frame;
 use crate::placement::pelvis::Follower;
 use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
+use crate::placement::way::Way;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
@@ -55,6 +56,17 @@ pub(super) enum Mode {
     Locked,
 }
 
+/// Origin of a swinging foot's way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Course {
+    /// The foothold that it left.
+    FromGround,
+    /// None: it follows the ground. Place in the world that the animation gave it.
+    Following(Vec3),
+    /// Its place in the air when its foothold became known, as in a run.
+    FromAir,
+}
+
 /// State of a foot from frame to frame.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Foot {
@@ -70,15 +82,14 @@ pub(super) struct Foot {
     /// Place in the world of the animation's landing when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
     /// Correction on the way to a foothold that was given up in this frame.
-    pub(super) dropped: Option<(Correction, f32)>,
+    pub(super) dropped: Option<(Correction, Way)>,
     /// Place in the world of a swinging ankle in the last frame.
     pub(super) passed: Option<Vec3>,
     /// Place in the world that the animation gave the foot when its way to a planned foothold began.
     pub(super) left_from: Option<Vec3>,
     /// Share of it that is still held there.
     pub(super) held: f32,
-    /// Place in the world that the animation gave a foot that follows the ground.
-    pub(super) followed: Option<Vec3>,
+    pub(super) course: Course,
     /// Correction that carried it when it last changed its mode, and the height in the world of the animation's floor then.
     pub(super) lifted_with: Correction,
     pub(super) lifted_from_m: f32,
@@ -157,7 +168,7 @@ impl Default for Foot {
             passed: None,
             left_from: None,
             held: 0.0,
-            followed: None,
+            course: Course::FromGround,
             lifted_with: Correction::NONE,
             lifted_from_m: 0.0,
             floor_m: 0.0,
@@ -255,7 +266,7 @@ impl Foot {
         self.lands = None;
         self.lifted_from_m = self.floor_m;
         self.left_from = None;
-        self.followed = None;
+        self.course = Course::FromGround;
         self.passed = None;
         self.lifted_with = self.correction;
         self.swing_secs = 0.0;

@@ -10,11 +10,18 @@ use glam::Vec3;
 
 /// Steps that have to be longer or shorter by less are right as they are.
 const SAME_SHARE: f32 = 0.02;
+/// Grade above which a run becomes a walk.
+const STEEP: f32 = 0.25;
 
 impl FootPlacer {
     /// Share of its speed that a walker keeps on the ground under it and on that ahead.
     pub fn pace(&self) -> f32 {
         slowed_by(self.grade).min(slowed_by(self.grade_ahead))
+    }
+
+    /// Returns true where nobody runs: on stairs and on grades of more than a quarter, under the walker or ahead.
+    pub fn is_steep(&self) -> bool {
+        self.grade.abs().max(self.grade_ahead.abs()) > STEEP
     }
 
     /// Grade of the way: of the ground under the feet and of that ahead, in equal parts; rise by run, positive uphill.

@@ -3,10 +3,11 @@
 use crate::leg::FootTarget;
 use crate::placement::aim::{Aim, Step};
 use crate::placement::correction::{Correction, Residual};
-use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, REPLANT_SECS, Scene};
+use crate::placement::foot::{Animated, Course, FOLLOW_SECS, Foot, REPLANT_SECS, Scene};
 use crate::placement::foothold::Foothold;
 use crate::placement::frame::Frame;
 use crate::placement::terrain::Terrain;
+use crate::placement::way::{Way, passed};
 use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
@@ -29,18 +30,6 @@ const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
 /// Share of its height over the toes by which the heel then descends, until this part of the swing; otherwise the knee would bend for it.
 const LEVEL_HEEL: f32 = 0.7;
 const LEVEL_HEEL_SHARE: f32 = 0.4;
-/// Parts of the swing in which a foot rises, or descends: it clears the edge before that, or after it.
-const RISE_SHARE: f32 = 0.5;
-/// Clearance of a swinging foot from the ground, metres.
-const CLEARANCE_M: f32 = 0.03;
-/// Typical lift on flat ground in the middle of the swing, metres.
-const USUAL_LIFT_M: f32 = 0.05;
-/// Height above the sole's path up to which ground is no obstacle, metres.
-const FLAT_WAY_M: f32 = 0.01;
-/// Greatest lift in the middle of the swing, relative to the lift that any place of the path needs.
-const MOST_LIFT_SHARE: f32 = 2.5;
-/// Number of places of the path at which the ground is queried.
-const WAY_POINTS: usize = 6;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
 const SAME_LANDING_M: f32 = 0.1;
 
@@ -53,8 +42,8 @@ pub(super) struct PlannedFoothold {
     /// Landing of the animation, relative to the foothold; `None` until it is announced again, since the animation may adapt its step to this
     /// foothold.
     flat_from_sole: Option<Vec3>,
-    /// Height by which it has to be lifted more than usual; `None` until it leaves the ground.
-    lift_m: Option<f32>,
+    /// Way there; `None` until it leaves the ground.
+    way: Option<Way>,
 }
 
 impl Foot {
@@ -71,15 +60,21 @@ impl Foot {
         let here = (animated.flat, 0.0);
         let announced = animated.landing.map(|landing| (landing.flat, landing.secs));
         let ends = announced.or_else(|| animated.contact.then_some(here));
+        let follows = matches!(self.course, Course::Following(_));
+        if follows && ends.is_some() && self.plan.is_some() {
+            self.join_way(scene, animated);
+        }
         let planned = ends.and_then(|end| Some((end, self.toward(scene, animated, &end.0)?)));
-        if let Some(((_, secs), (toward, height))) = planned {
+        if let Some(((flat, secs), (toward, way))) = planned {
             self.over_ground = true;
             let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
             let from = self.lifted(scene);
-            (self.correction, lift) = on_way(&from, &toward, height, share);
-            if let Some((old_toward, old_height)) = self.dropped.take() {
+            let start = self.start(scene, animated);
+            let passed = passed(start, flat.position, animated.flat.position);
+            (self.correction, lift) = way.at(&from, &toward, share, passed);
+            if let Some((old_toward, old_way)) = self.dropped.take() {
                 // It turns to another foothold without a jump.
-                let (correction, old_lift) = on_way(&from, &old_toward, old_height, share);
+                let (correction, old_lift) = old_way.at(&from, &old_toward, share, passed);
                 let mut was = correction.apply(&animated.flat, &animated.foot);
                 was.ankle.y += old_lift;
                 let mut now = self.correction.apply(&animated.flat, &animated.foot);
@@ -96,16 +91,13 @@ impl Foot {
         }
         let secs_left = planned.map(|((_, secs), _)| secs);
         self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
-        if let (Some(lands), Some(((flat, secs), (toward, _)))) = (self.lands, planned) {
-            // A foot that goes down does so where it is to stand: its heel keeps clear of the edge behind it.
-            let fall = self.lifted(scene).shift.y - toward.shift.y;
-            let [from, until] = EARLY_SECS;
-            let early =
-                smooth_step((from - secs) / (from - until)) * smooth_step(fall / EARLY_FALL_M);
-            let left = flat.position - animated.flat.position;
-            self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
-            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
-            self.hold_back(scene, animated, lands, &toward, share);
+        if let (Some(lands), Some(((flat, secs), (toward, way)))) = (self.lands, planned) {
+            if self.course == Course::FromGround {
+                let fall = (1.0 - way.even) * (self.lifted(scene).shift.y - toward.shift.y);
+                self.hurry(animated, &flat, secs, fall);
+                let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
+                self.hold_back(scene, animated, lands, &toward, share);
+            }
             self.stay_before_edge(animated, lands);
         }
         let mut foot = animated.foot;
@@ -125,6 +117,31 @@ impl Foot {
         target
     }
 
+    /// Place that the animation gave the foot when its way began, relative to its floor now.
+    fn start<T: Terrain>(&mut self, scene: &Scene<'_, T>, animated: &Animated) -> Vec3 {
+        let place = scene.world_from_floor.point(animated.flat.position);
+        let start = *self.left_from.get_or_insert(place);
+        scene.world_from_floor.local_point(start)
+    }
+
+    /// Begins the way to a foothold where a foot is that has followed the ground until now. It goes on as it does, high over edges.
+    fn join_way<T: Terrain>(&mut self, scene: &Scene<'_, T>, animated: &Animated) {
+        self.lifted_with = self.correction;
+        self.lifted_from_m = scene.floor_m();
+        self.left_from = Some(scene.world_from_floor.point(animated.flat.position));
+        self.swing_secs = 0.0;
+        self.course = Course::FromAir;
+    }
+
+    /// Brings a foot that goes down by so much over its foothold early: its heel keeps clear of the edge behind it.
+    fn hurry(&mut self, animated: &Animated, flat: &Frame, secs: f32, fall_m: f32) {
+        let [from, until] = EARLY_SECS;
+        let early =
+            smooth_step((from - secs) / (from - until)) * smooth_step(fall_m / EARLY_FALL_M);
+        let left = flat.position - animated.flat.position;
+        self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
+    }
+
     /// Holds a foot that rises over an edge above its last place, in the first part of the swing.
     fn hold_back<T: Terrain>(
         &mut self,
@@ -134,9 +151,7 @@ impl Foot {
         toward: &Correction,
         share: f32,
     ) {
-        let place = scene.world_from_floor.point(animated.flat.position);
-        let start = *self.left_from.get_or_insert(place);
-        let start = scene.world_from_floor.local_point(start);
+        let start = self.start(scene, animated);
         let lifted = self.lifted(scene);
         let way = lands - (start + lifted.shift);
         // A slope on which it stood goes on: it is no edge.
@@ -166,24 +181,25 @@ impl Foot {
         lifted
     }
 
-    /// The correction at the landing and the lift before it; `None` without a planned foothold.
+    /// The correction at the landing and the way there; `None` without a planned foothold.
     fn toward<T: Terrain>(
         &mut self,
         scene: &mut Scene<'_, T>,
         animated: &Animated,
         flat: &Frame,
-    ) -> Option<(Correction, f32)> {
+    ) -> Option<(Correction, Way)> {
         let plan = self.plan?;
         let sole = scene.sole(&plan.foothold)?;
-        let lift_m = match plan.lift_m {
-            Some(lift_m) => lift_m,
-            None => self.way_lift(scene, animated, &sole),
-        };
+        let way = plan.way.unwrap_or_else(|| {
+            let lifted = self.lifted(scene);
+            let from = animated.flat.position + lifted.shift;
+            Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole)
+        });
         self.plan = Some(PlannedFoothold {
-            lift_m: Some(lift_m),
+            way: Some(way),
             ..plan
         });
-        Some((Correction::between(flat, &sole), lift_m))
+        Some((Correction::between(flat, &sole), way))
     }
 
     /// Plans the next foothold; a plan is kept while the animation's landing stays.
@@ -205,7 +221,7 @@ impl Foot {
             }
             let toward =
                 Correction::between(&step.landing.flat, &scene.world_from_floor.local(&sole));
-            self.dropped = plan.lift_m.map(|lift_m| (toward, lift_m));
+            self.dropped = plan.way.map(|way| (toward, way));
         }
         let again = self
             .missed_at
@@ -224,38 +240,8 @@ impl Foot {
             foothold: aim.foothold,
             next_rise_m: aim.next_rise_m,
             flat_from_sole: None,
-            lift_m: None,
+            way: None,
         });
-    }
-
-    /// Height by which the foot has to be lifted more than usual in the middle of its way to `sole`.
-    fn way_lift<T: Terrain>(
-        &self,
-        scene: &mut Scene<'_, T>,
-        animated: &Animated,
-        sole: &Frame,
-    ) -> f32 {
-        let from = animated.flat.position + self.lifted(scene).shift;
-        let rises = sole.position.y > from.y;
-        let (mut lift, mut highest) = (0.0_f32, 0.0_f32);
-        for point in 1..=WAY_POINTS {
-            let share = point as f32 / (WAY_POINTS + 1) as f32;
-            let at = from.lerp(sole.position, smooth_step(share));
-            // The toes meet an edge before the ankle is there.
-            let Some((height, _)) = scene.ground(at + sole.forward() * 0.1) else {
-                continue;
-            };
-            let foot = from.y + (sole.position.y - from.y) * smooth_step(rising(share, rises));
-            let shape = (4.0 * share * (1.0 - share)).powi(2);
-            let short = height + CLEARANCE_M - foot - USUAL_LIFT_M * shape.sqrt();
-            // What lies no higher than the way from one foothold to the other is cleared by any walk.
-            if height > foot + FLAT_WAY_M && short > 0.0 {
-                lift = lift.max(short / shape.max(0.2));
-                highest = highest.max(short);
-            }
-        }
-        // What stands near an end of the way is no reason to kick in its middle: there the guard lifts the foot.
-        lift.min(MOST_LIFT_SHARE * highest)
     }
 
     /// Follows the ground under a foot without a known landing.
@@ -288,13 +274,13 @@ impl Foot {
         }
         // Along the plane that it follows it does so without delay.
         let place = scene.world_from_floor.point(animated.flat.position);
-        if let Some(before) = self.followed {
+        if let Course::Following(before) = self.course {
             let way = scene.world_from_floor.rotation.conjugate() * (place - before);
             let normal = self.correction.tilt * Vec3::Y;
             let along = (normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
             self.correction.shift.y -= along + way.y;
         }
-        self.followed = Some(place);
+        self.course = Course::Following(place);
         let share = 1.0 - (-scene.dt_secs / FOLLOW_SECS).exp();
         self.correction = self.correction.toward(&toward, share, share);
     }
@@ -312,21 +298,4 @@ fn level(rocker: &RockerFoot, animated: &Animated, secs: f32, share: f32, foot: 
     foot.ankle += animated.flat.rotation * roll;
     foot.foot = (foot.foot * turn).normalize();
     foot.toes = (foot.toes * turn).normalize();
-}
-
-/// The correction on the way from one to another, and how much the foot is lifted there.
-fn on_way(from: &Correction, toward: &Correction, height: f32, share: f32) -> (Correction, f32) {
-    let rises = toward.shift.y > from.shift.y;
-    let up = smooth_step(rising(share, rises));
-    let correction = from.toward(toward, smooth_step(share), up);
-    (correction, height * (share * (1.0 - share) * 4.0).powi(2))
-}
-
-/// Share of its rise that a foot has behind it: one that goes up rises early, one that goes down sinks late.
-fn rising(share: f32, rises: bool) -> f32 {
-    if rises {
-        share / RISE_SHARE
-    } else {
-        (share - 1.0 + RISE_SHARE) / RISE_SHARE
-    }
 }

@@ -1,0 +1,117 @@
+//! Place of the pelvis when the next foot lands.
+
+use crate::leg::reach_height;
+use crate::placement::FootPlacer;
+use crate::placement::carry::{EASY_EXTENSION, Moment};
+use crate::placement::correction::Correction;
+use crate::placement::foot::{Landing, MAX_PITCH, Mode};
+use crate::placement::frame::Frame;
+use crate::placement::pelvis::plane_height;
+use crate::placement::terrain::Terrain;
+use glam::{Quat, Vec3};
+
+/// Typical duration of a step of a walk, and the least time over which its rise is spread, seconds.
+const STEP_SECS: f32 = 0.6;
+const LEAST_STEP_SECS: f32 = 0.2;
+/// Shortest step of a run whose length gives a grade, metres, and the least time until its landing, seconds.
+const SHORT_STEP_M: f32 = 0.2;
+const LEAST_FLIGHT_SECS: f32 = 0.05;
+/// Farthest place of the hips on the way from one foothold of a run to the next, as a part of it.
+const FARTHEST: f32 = 1.2;
+
+/// Place of the pelvis at a landing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Arrival {
+    /// Above the animation's floor, metres, and how fast it rises then, m/s.
+    pub(super) offset_m: f32,
+    pub(super) rise_mps: f32,
+    pub(super) secs: f32,
+}
+
+impl FootPlacer {
+    /// Place of the pelvis at the next landing, for an animation that knows it.
+    pub(super) fn arrival(
+        &self,
+        moment: &Moment<'_>,
+        terrain: &mut impl Terrain,
+        hips_rotation: Quat,
+    ) -> Option<Arrival> {
+        let (input, animated) = (moment.input, moment.animated);
+        let floor = input.world_from_floor;
+        let index = input.landings.iter().position(Option::is_some)?;
+        let landing = input.landings[index]?;
+        let plan = self.feet[index].plan?;
+        let sole = floor.local(&plan.foothold.world_from_sole(terrain)?);
+        let other = 1 - index;
+        let standing = &self.feet[other];
+        let on_ball = plan.foothold.on_ball;
+        let reach = |leg: usize, flat: &Frame, correction: &Correction, on_ball: bool| {
+            let ankle = landing.ankles[leg];
+            let hip = hips_rotation * self.hips_from_hip[leg];
+            let limit = |ankle: Vec3| {
+                let length = self.leg_lengths[leg];
+                reach_height(landing.hips, hip, ankle, length, EASY_EXTENSION)
+                    .map_or(0.0, |height| height - landing.hips.y)
+            };
+            // In a landing on the ball of the foot the ankle is above the flat sole.
+            let above = if on_ball {
+                Vec3::Y * self.rockers[leg].ankle_height()
+            } else {
+                ankle - flat.position
+            };
+            let real = flat.position + correction.shift + correction.tilt * above;
+            // What the leg lacks on the animation's own floor is the animation's affair.
+            limit(real) - limit(ankle).min(0.0)
+        };
+        let lands = Correction::between(&landing.flat, &sole);
+        let reached = reach(index, &landing.flat, &lands, on_ball);
+        if standing.mode != Mode::Locked || self.is_off(other, &landing) {
+            let from = floor.local_point(self.stood_at?);
+            let (height, rise_mps) = over_the_way(from, sole.position, plan.next_rise_m, &landing);
+            return Some(Arrival {
+                offset_m: height.min(reached),
+                rise_mps,
+                secs: landing.secs,
+            });
+        }
+        let plane = |sole: &Frame| plane_height(sole.position, sole.up(), landing.hips);
+        let between = 0.5 * (plane(&sole) + plane(&standing.sole));
+        let stays = reach(other, &animated[other].flat, &standing.correction, false);
+        let offset_m = between.min(reached).min(stays);
+        let floor_height = floor.position.dot(floor.up());
+        let rise = sole.position.y - standing.sole.position.y;
+        let secs = landing.secs.max(LEAST_STEP_SECS);
+        // It passes a landing at the pace of the way there and of that to come, and turns where they differ.
+        let coming = 0.5 * (rise + plan.next_rise_m) / STEP_SECS;
+        let going = (floor_height + offset_m - self.pelvis.value) / secs;
+        let rise_mps = if coming * going > 0.0 {
+            coming.signum() * coming.abs().min(going.abs())
+        } else {
+            0.0
+        };
+        Some(Arrival {
+            offset_m,
+            rise_mps,
+            secs: landing.secs,
+        })
+    }
+
+    /// Returns true when a foot no longer stands when the other lands, as in a run: no heel of a standing foot lifts its ankle so high.
+    pub(super) fn is_off(&self, index: usize, landing: &Landing) -> bool {
+        let rocker = &self.rockers[index];
+        landing.ankles[index].y > rocker.ankle_height() + rocker.roll(MAX_PITCH).y
+    }
+}
+
+/// Height of the ground's line from one foothold of a run to the next under the hips of a landing, and how fast the line rises under them, m/s.
+///
+/// The planes of the footholds say nothing here: the hips are up to a metre away from the first.
+fn over_the_way(from: Vec3, to: Vec3, next_rise_m: f32, landing: &Landing) -> (f32, f32) {
+    let way = (to - from).with_y(0.0);
+    let length = way.length().max(SHORT_STEP_M);
+    let rise = to.y - from.y;
+    let passed = (landing.hips - from).dot(way) / (length * length);
+    let speed = landing.hips.with_y(0.0).length() / landing.secs.max(LEAST_FLIGHT_SECS);
+    let grade = 0.5 * (rise + next_rise_m) / length;
+    (from.y + passed.clamp(0.0, FARTHEST) * rise, grade * speed)
+}

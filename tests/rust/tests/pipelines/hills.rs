@@ -1,0 +1,106 @@
+//! Runs over hills and blocks: where it is not steep they go on as runs, and hips, feet and knees go as smoothly as on level ground.
+
+use footfall_tests::climb::{BODIES, Climb, Outcome, Way, percentile};
+
+/// Distance to the ground that is not level, metres: the run has its speed by then.
+const DISTANCE_M: f32 = 6.0;
+
+/// A run, and the share of frames without a standing foot from 2 m to 10 m behind the first edge.
+fn run(climb: &Climb) -> (Outcome, f32) {
+    let (mut flying, mut frames) = (0, 0);
+    let outcome = climb.watch(|_, walker| {
+        if (2.0..10.0).contains(&(walker.hips().z - climb.distance_m)) {
+            frames += 1;
+            flying += usize::from(walker.placer.feet().iter().all(|foot| !foot.locked));
+        }
+    });
+    (outcome, flying as f32 / frames as f32)
+}
+
+fn runner(way: Way, speed_mps: f32) -> Climb {
+    Climb {
+        runs: true,
+        ..Climb::adult(way, DISTANCE_M, speed_mps)
+    }
+}
+
+/// Expects that nothing goes wrong: level runs of 5 m/s accelerate hips by 18 m/s² in 99 frames of a hundred, and ankles change their way by 6 cm in a frame.
+fn expect_smooth(climb: &Climb, outcome: &Outcome, jump_m: f32) {
+    assert!(outcome.faults.is_empty(), "{climb:?}: {:?}", outcome.faults);
+    assert!(outcome.slip < 0.001, "{climb:?}: {} m/s", outcome.slip);
+    let hips = percentile(&outcome.acceleration, 0.99);
+    assert!(hips < 25.0, "{climb:?}: {hips} m/s²");
+    assert!(outcome.jump < jump_m, "{climb:?}: {} m", outcome.jump);
+    let bend = outcome.bend.to_degrees();
+    assert!(bend < 155.0, "{climb:?}: {bend}°");
+}
+
+#[test]
+fn runners_go_on_running_up_and_down_slopes() {
+    for body in BODIES {
+        for speed_mps in [3.5, 5.0] {
+            for slope in [-0.21, -0.14, -0.07, 0.07, 0.14] {
+                let way = Way::Ramp {
+                    slope,
+                    length: 12.0,
+                };
+                let climb = Climb {
+                    body,
+                    ..runner(way, speed_mps)
+                };
+                let (outcome, flight) = run(&climb);
+                expect_smooth(&climb, &outcome, 0.075);
+                assert!(flight > 0.2, "{climb:?}: {flight} of the frames");
+                assert!(outcome.knee < 2500.0, "{climb:?}: {} rad/s²", outcome.knee);
+            }
+        }
+    }
+}
+
+#[test]
+fn nobody_runs_up_what_is_steep() {
+    for slope in [-0.4, 0.4] {
+        let way = Way::Ramp {
+            slope,
+            length: 12.0,
+        };
+        let climb = runner(way, 3.5);
+        let (outcome, flight) = run(&climb);
+        expect_smooth(&climb, &outcome, 0.075);
+        assert!(flight < 0.02, "{climb:?}: {flight} of the frames");
+    }
+}
+
+#[test]
+fn hills_and_blocks_are_run_over_smoothly() {
+    for seed in 0..4 {
+        let hills = [0.5, 1.0, 2.0].map(|height| Way::Hills { height, seed });
+        let blocks = [0.06, 0.15].map(|height| Way::Blocks { height, seed });
+        for way in hills.into_iter().chain(blocks) {
+            for speed_mps in [2.4, 3.5, 5.0] {
+                let climb = Climb {
+                    seed: 7 + u64::from(seed),
+                    ..runner(way, speed_mps)
+                };
+                let (outcome, _) = run(&climb);
+                expect_smooth(&climb, &outcome, 0.11);
+            }
+        }
+    }
+}
+
+#[test]
+fn knees_bend_on_slopes_little_more_than_on_level_ground() {
+    // On level ground it is 68 to 75°.
+    for (slope, most) in [(0.14, 85.0), (0.364, 100.0), (-0.14, 98.0), (-0.364, 113.0)] {
+        let way = Way::Ramp {
+            slope,
+            length: 12.0,
+        };
+        for speed_mps in [0.8, 1.3, 2.0] {
+            let climb = Climb::adult(way, DISTANCE_M, speed_mps);
+            let bend = climb.walk().bend.to_degrees();
+            assert!(bend < most, "{climb:?}: {bend}°");
+        }
+    }
+}
