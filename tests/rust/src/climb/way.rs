@@ -63,7 +63,8 @@ impl Way {
         }
     }
 
-    pub(super) fn length(self) -> f32 {
+    /// Distance from the first edge to the last, over the ground, metres.
+    pub fn length(self) -> f32 {
         match self {
             Self::Level => 6.0,
             Self::Stairs { run, .. } => STEPS * run,

@@ -1,6 +1,10 @@
 //! Runs over hills and blocks: where it is not steep they go on as runs, and hips, feet and knees go as smoothly as on level ground.
 
-use footfall_tests::climb::{BODIES, Climb, Outcome, Way, percentile};
+use footfall_core::{Side, Skeleton};
+use footfall_synth::{Controls, GaitChoice};
+use footfall_tests::climb::{BODIES, Climb, DT, Outcome, Way, percentile, walker};
+use footfall_tests::terrain::Relief;
+use glam::Vec3;
 
 /// Distance to the ground that is not level, metres: the run has its speed by then.
 const DISTANCE_M: f32 = 6.0;
@@ -101,6 +105,61 @@ fn knees_bend_on_slopes_little_more_than_on_level_ground() {
             let climb = Climb::adult(way, DISTANCE_M, speed_mps);
             let bend = climb.walk().bend.to_degrees();
             assert!(bend < most, "{climb:?}: {bend}°");
+        }
+    }
+}
+
+/// Farthest that an ankle jumps beyond how it moved the frame before, metres, of somebody who is asked for something else again and again, also in mid-swing.
+fn jump_of_the_restless(way: Way, seed: u16) -> f32 {
+    const SPEEDS: [f32; 6] = [0.0, 1.2, 4.5, 2.6, 0.4, 3.4];
+    const TURNS: [f32; 5] = [0.0, -1.4, 0.0, 1.8, 0.6];
+    const DIRECTIONS: [f32; 3] = [0.0, 3.5, 1.6];
+    let mut terrain = Relief::still(move |x, z| way.height(x, z.rem_euclid(way.length())));
+    let mut walker = walker(&Skeleton::standard(), u64::from(seed) + 1);
+    let mut controls = Controls::STAND;
+    let mut ankles: Vec<[Vec3; 2]> = Vec::new();
+    for frame in 0..900_usize {
+        let (change, since) = (frame / 41, frame % 41);
+        if since == 0 {
+            let turn = change + usize::from(seed);
+            controls.speed_mps = SPEEDS[turn % SPEEDS.len()];
+            controls.turn_rate_radps = TURNS[turn % TURNS.len()];
+            let slow = controls.speed_mps < 1.5;
+            controls.direction_rad = if slow {
+                DIRECTIONS[turn % DIRECTIONS.len()]
+            } else {
+                0.0
+            };
+        }
+        controls.gait = if walker.placer.is_steep() {
+            GaitChoice::Walk
+        } else {
+            GaitChoice::Auto
+        };
+        walker.climb(DT, controls, &mut terrain, true);
+        ankles.push(Side::BOTH.map(|side| walker.world.position(side.foot())));
+    }
+    let jumps = ankles[60..]
+        .windows(3)
+        .flat_map(|at| [0, 1].map(|foot| (at[0][foot] - 2.0 * at[1][foot] + at[2][foot]).length()));
+    jumps.fold(0.0, f32::max)
+}
+
+#[test]
+fn no_foot_jumps_when_a_step_is_planned_anew() {
+    for seed in 0..8_u16 {
+        let hills = Way::Hills {
+            height: 1.0,
+            seed: seed.into(),
+        };
+        let blocks = Way::Blocks {
+            height: 0.1,
+            seed: seed.into(),
+        };
+        // Edges in the way of a foot lift it within some frames.
+        for (way, most_m) in [(Way::Level, 0.08), (hills, 0.08), (blocks, 0.2)] {
+            let jump = jump_of_the_restless(way, seed);
+            assert!(jump < most_m, "{way:?}, seed {seed}: {jump} m");
         }
     }
 }

@@ -10,7 +10,6 @@ use crate::placement::frame::Frame;
 use crate::placement::pelvis::Follower;
 use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
-use crate::placement::way::Way;
 use crate::rocker::{Plant, RockerFoot};
 use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
@@ -81,8 +80,10 @@ pub(super) struct Foot {
     pub(super) plan: Option<PlannedFoothold>,
     /// Place in the world of the animation's landing when no ground was found for it.
     pub(super) missed_at: Option<Vec3>,
-    /// Correction on the way to a foothold that was given up in this frame.
-    pub(super) dropped: Option<(Correction, Way)>,
+    /// Lift over edges on its way in the last frame, metres.
+    pub(super) lift: f32,
+    /// The same on the way to a foothold that was given up in this frame.
+    pub(super) dropped: Option<f32>,
     /// Place in the world of a swinging ankle in the last frame.
     pub(super) passed: Option<Vec3>,
     /// Place in the world that the animation gave the foot when its way to a planned foothold began.
@@ -164,6 +165,7 @@ impl Default for Foot {
             lands: None,
             plan: None,
             missed_at: None,
+            lift: 0.0,
             dropped: None,
             passed: None,
             left_from: None,

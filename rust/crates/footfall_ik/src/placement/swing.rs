@@ -55,6 +55,8 @@ impl Foot {
         animated: &Animated,
     ) -> FootTarget {
         let mut lift = 0.0;
+        let mut before = self.correction;
+        before.shift.y -= scene.floor_m() - self.floor_m;
         self.held = 0.0;
         // In the frame of the contact itself there is nothing more to land.
         let here = (animated.flat, 0.0);
@@ -72,15 +74,6 @@ impl Foot {
             let start = self.start(scene, animated);
             let passed = passed(start, flat.position, animated.flat.position);
             (self.correction, lift) = way.at(&from, &toward, share, passed);
-            if let Some((old_toward, old_way)) = self.dropped.take() {
-                // It turns to another foothold without a jump.
-                let (correction, old_lift) = old_way.at(&from, &old_toward, share, passed);
-                let mut was = correction.apply(&animated.flat, &animated.foot);
-                was.ankle.y += old_lift;
-                let mut now = self.correction.apply(&animated.flat, &animated.foot);
-                now.ankle.y += lift;
-                self.residual = Residual::of(&self.residual.apply(&was), &now);
-            }
         } else {
             self.dropped = None;
             self.follow(scene, rocker, animated);
@@ -98,8 +91,16 @@ impl Foot {
                 let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
                 self.hold_back(scene, animated, lands, &toward, share);
             }
-            self.stay_before_edge(animated, lands);
+            let start = self.start(scene, animated);
+            self.stay_before_edge(animated, start, lands);
         }
+        if let Some(dropped) = self.dropped.take() {
+            // It turns to another foothold without a jump.
+            let went_on = Self::carried(&before, dropped, animated);
+            let turned = Self::carried(&self.correction, lift, animated);
+            self.residual = Residual::of(&self.residual.apply(&went_on), &turned);
+        }
+        self.lift = lift;
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
             && self.plan.is_some_and(|plan| plan.foothold.on_ball)
@@ -115,6 +116,13 @@ impl Foot {
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
+    }
+
+    /// The animation's foot with a correction and a lift.
+    fn carried(correction: &Correction, lift: f32, animated: &Animated) -> FootTarget {
+        let mut foot = correction.apply(&animated.flat, &animated.foot);
+        foot.ankle.y += lift;
+        foot
     }
 
     /// Place that the animation gave the foot when its way began, relative to its floor now.
@@ -165,10 +173,14 @@ impl Foot {
     }
 
     /// Keeps a foot that swings past its foothold, and back to it, from the edge above that: it would be thrown over it.
-    fn stay_before_edge(&mut self, animated: &Animated, lands: Vec3) {
+    fn stay_before_edge(&mut self, animated: &Animated, start: Vec3, lands: Vec3) {
         let rise = self.plan.map_or(0.0, |plan| plan.next_rise_m);
         let past = (animated.flat.position + self.correction.shift - lands).with_y(0.0);
         let forward = animated.flat.forward().with_y(0.0).normalize_or_zero();
+        if (lands - start).dot(forward) < 0.0 {
+            // It steps backwards.
+            return;
+        }
         let past_m = past.dot(forward).max(0.0);
         let back_m = past_m * past_m / (past_m + MOST_PAST_M);
         self.correction.shift -= forward * (back_m * smooth_step(rise / LATE_RISE_M));
@@ -219,9 +231,7 @@ impl Foot {
             {
                 return;
             }
-            let toward =
-                Correction::between(&step.landing.flat, &scene.world_from_floor.local(&sole));
-            self.dropped = plan.way.map(|way| (toward, way));
+            self.dropped = plan.way.map(|_| self.lift);
         }
         let again = self
             .missed_at
