@@ -3,11 +3,14 @@ extends WalkingScene
 
 const PLACED: PackedScene = preload("res://scenes/shared/placed_walker.tscn")
 const COLOURS: Array[Color] = [
-	Color("c96f53"), Color("5f8fb0"), Color("d1a24c"), Color("6fa287"), Color("8d7bb0"),
+	Color("c96f53"), Color("5f8fb0"), Color("d1a24c"), Color("6fa287"), Color("b06a8e"), Color("8d7bb0"),
 ]
 ## Walkers begin and end so far from the middle of the course, metres.
 const END_M := 8.0
 const SPEED := 1.1
+## Over the hills somebody runs.
+const HILLS_LANE := 4
+const RUN_SPEED := 3.4
 ## On the platform they go round.
 const PLATFORM_SPEED := 0.7
 const PLATFORM_TURN := 0.8
@@ -20,7 +23,7 @@ var _soles: Array[Dictionary] = []
 
 
 func _ready() -> void:
-	_camera.distance_m = 13.0
+	_camera.distance_m = 15.0
 	_camera.heading = deg_to_rad(42.0)
 	_camera.height = deg_to_rad(20.0)
 	for lane: int in Course.LANES.size():
@@ -55,7 +58,7 @@ func _add(lane: int) -> void:
 	var gait := gait_of(walker)
 	gait.seed = lane + 1
 	gait.phase = fposmod(lane * 0.618034, 1.0)
-	gait.speed = SPEED
+	gait.speed = RUN_SPEED if lane == HILLS_LANE else SPEED
 	if lane == Course.LANES.size() - 1:
 		walker.position = Vector3(-0.75, 0.0, 0.0)
 		_course.platform.add_child(walker)
@@ -92,7 +95,8 @@ func close_ups() -> Dictionary[String, Array]:
 		"stairs": [at.call(1), 80.0, 8.0, 3.6],
 		"rubble": [at.call(2), 325.0, 16.0, 3.4],
 		"across": [at.call(3), 5.0, 8.0, 3.4],
-		"platform": [at.call(4), 320.0, 14.0, 4.2],
+		"hills": [at.call(HILLS_LANE), 84.0, 6.0, 3.8],
+		"platform": [at.call(5), 320.0, 14.0, 4.2],
 	}
 
 
