@@ -155,7 +155,7 @@ namespace Footfall
             set => Native.Set(PropertyName.FollowGround, value);
         }
 
-        /// <summary>If <c>true</c>, the character is in the air and feet follow the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>.</summary>
+        /// <summary>If <c>true</c>, the character is in the air and feet follow the animation. Set it from the game, for example <c>foot_placement.in_air = not is_on_floor()</c>. Jumps of a <see cref="GaitGenerator3D"/> beside this node need no setting.</summary>
         public bool InAir
         {
             get => Native.Get(PropertyName.InAir).AsBool();

@@ -86,6 +86,28 @@ func test_runners_run_over_hills_and_walk_where_it_is_steep() -> void:
 		ground.free()
 
 
+func test_a_jump_leaves_the_ground_and_comes_back_to_it() -> void:
+	for degrees: float in [0.0, 10.0]:
+		var ground := _ground(_slope(degrees))
+		var walker := _walker(func(jumper: Walker) -> void: jumper.gait.speed = 0.0)
+		await get_tree().physics_frame
+		walker.walk(60)
+		var standing := walker.joint("Hips").y
+		var place := walker.global_position
+		check(walker.gait.jump(0.3), "it will jump")
+		var heights: Array[float] = []
+		var lowest := [INF]
+		walker.walk(120, func() -> void:
+			heights.append(walker.joint("Hips").y)
+			lowest[0] = minf(lowest[0], walker.global_position.y - place.y))
+		check_near(heights.max() - standing, 0.3, 0.06, "rise of the hips at %.0f°" % degrees)
+		check(lowest[0] > -0.03, "the character stays above the ground: %.3f" % lowest[0])
+		check_near(walker.joint("Hips").y, standing, 0.03, "it stands as before")
+		check(_placement(walker).is_foot_planted(&"left") and _placement(walker).is_foot_planted(&"right"), "on both feet")
+		walker.free()
+		ground.free()
+
+
 func test_standing_feet_do_not_slip_on_a_slope() -> void:
 	var ground := _ground(_slope(15))
 	var walker := _walker()

@@ -96,7 +96,7 @@ pub(crate) struct FootPlacement3D {
     follow_ground: bool,
 
     /// If `true`, the character is in the air and feet follow the animation. Set it from the game, for example
-    /// `foot_placement.in_air = not is_on_floor()`.
+    /// `foot_placement.in_air = not is_on_floor()`. Jumps of a `GaitGenerator3D` beside this node need no setting.
     #[var]
     in_air: bool,
 

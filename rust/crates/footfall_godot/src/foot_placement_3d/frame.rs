@@ -30,7 +30,10 @@ impl FootPlacement3D {
         };
         let in_editor = Engine::singleton().is_editor_hint();
         let influence = self.base().get_influence().clamp(0.0, 1.0);
-        if self.follow_ground && !in_editor && !self.in_air && dt_secs > 0.0 {
+        let generator = generator_beside(&skeleton).filter(|generator| generator.is_active());
+        let soars = generator.as_ref().is_some_and(|it| it.bind().soars());
+        let airborne = self.in_air || soars;
+        if self.follow_ground && !in_editor && !airborne && dt_secs > 0.0 {
             let share = influence * (1.0 - (-dt_secs / RISE_SECS).exp());
             let up = convert::frame(session.character.get_global_transform()).up();
             let rise = convert::vector3(up * (share * session.placer.ground_offset_m()));
@@ -39,14 +42,13 @@ impl FootPlacement3D {
                 session.character.set_global_position(place);
             }
         }
-        let generator = generator_beside(&skeleton);
         let mut input = PlacementInput {
             world_from_floor: session.world_from_floor(),
             contacts: None,
             landings: [None; 2],
-            airborne: self.in_air,
+            airborne,
         };
-        if let Some(mut generator) = generator.filter(|generator| generator.is_active()) {
+        if let Some(mut generator) = generator {
             let mut generator = generator.bind_mut();
             if let Some((contacts, landings)) = generator.feet() {
                 input.contacts = Some(contacts);

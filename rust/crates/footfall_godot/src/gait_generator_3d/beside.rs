@@ -28,6 +28,12 @@ impl GaitGenerator3D {
         Some((session.generator.feet_in_contact(), landings))
     }
 
+    /// Returns true in the flight of a two-footed jump.
+    pub(crate) fn soars(&self) -> bool {
+        let session = self.session.as_ref();
+        session.is_some_and(|session| session.generator.soars())
+    }
+
     /// Changes the length of the step that has just begun to this share.
     pub(crate) fn stretch_step(&mut self, share: f32) {
         // A replica's foothold was chosen by the walker that it is one of.

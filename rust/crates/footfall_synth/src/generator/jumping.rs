@@ -98,6 +98,11 @@ impl GaitGenerator {
         both.or_else(|| self.leap_phase())
     }
 
+    /// Returns true in the flight of a two-footed jump, which moves the character itself up and down; a leap lifts the body above it.
+    pub fn soars(&self) -> bool {
+        self.moves.as_ref().and_then(Moves::phase) == Some(JumpPhase::Flight)
+    }
+
     /// Returns the phase of a leap. Its landing is the beginning of the next step, an ordinary one.
     fn leap_phase(&self) -> Option<JumpPhase> {
         let Steps::Styled(steps) = &self.steps else {
