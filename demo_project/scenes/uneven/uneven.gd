@@ -95,8 +95,8 @@ func close_ups() -> Dictionary[String, Array]:
 		"stairs": [at.call(1), 80.0, 8.0, 3.6],
 		"rubble": [at.call(2), 325.0, 16.0, 3.4],
 		"across": [at.call(3), 5.0, 8.0, 3.4],
-		"hills": [at.call(HILLS_LANE), 84.0, 6.0, 3.8],
 		"platform": [at.call(5), 320.0, 14.0, 4.2],
+		"hills": [at.call(HILLS_LANE), 66.0, 9.0, 4.4],
 	}
 
 

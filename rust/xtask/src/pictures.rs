@@ -17,7 +17,7 @@ const README: [(&str, &str, &str); 12] = [
     ("run.png", "run", "hero_side.png"),
     ("styles.png", "styles", "hero_front.png"),
     ("stairs.png", "uneven", "hero_stairs.png"),
-    ("slope.png", "uneven", "hero_ramp.png"),
+    ("hills.png", "uneven", "hero_hills.png"),
     ("crowd.png", "crowd", "hero_among.png"),
     ("third_person.png", "third_person", "hero_behind.png"),
     ("own_character.png", "own_character", "hero_side.png"),
