@@ -30,7 +30,8 @@ impl GaitGenerator3D {
 
     /// Returns true in the flight of a two-footed jump.
     pub(crate) fn soars(&self) -> bool {
-        let session = self.session.as_ref();
+        let walks = self.ownership == Ownership::Walking;
+        let session = self.session.as_ref().filter(|_| walks);
         session.is_some_and(|session| session.generator.soars())
     }
 

@@ -57,13 +57,13 @@ pub(super) enum Mode {
 
 /// Origin of a swinging foot's way.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Course {
+pub(super) enum WayOrigin {
     /// The foothold that it left.
-    FromGround,
+    Foothold,
     /// None: it follows the ground. Place in the world that the animation gave it.
-    Following(Vec3),
+    Unplanned(Vec3),
     /// Its place in the air when its foothold became known, as in a run.
-    FromAir,
+    Air,
 }
 
 /// State of a foot from frame to frame.
@@ -90,7 +90,7 @@ pub(super) struct Foot {
     pub(super) left_from: Option<Vec3>,
     /// Share of it that is still held there.
     pub(super) held: f32,
-    pub(super) course: Course,
+    pub(super) origin: WayOrigin,
     /// Correction that carried it when it last changed its mode, and the height in the world of the animation's floor then.
     pub(super) lifted_with: Correction,
     pub(super) lifted_from_m: f32,
@@ -170,7 +170,7 @@ impl Default for Foot {
             passed: None,
             left_from: None,
             held: 0.0,
-            course: Course::FromGround,
+            origin: WayOrigin::Foothold,
             lifted_with: Correction::NONE,
             lifted_from_m: 0.0,
             floor_m: 0.0,
@@ -268,7 +268,7 @@ impl Foot {
         self.lands = None;
         self.lifted_from_m = self.floor_m;
         self.left_from = None;
-        self.course = Course::FromGround;
+        self.origin = WayOrigin::Foothold;
         self.passed = None;
         self.lifted_with = self.correction;
         self.swing_secs = 0.0;

@@ -3,7 +3,7 @@
 use crate::leg::FootTarget;
 use crate::placement::aim::{Aim, Step};
 use crate::placement::correction::{Correction, Residual};
-use crate::placement::foot::{Animated, Course, FOLLOW_SECS, Foot, REPLANT_SECS, Scene};
+use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, REPLANT_SECS, Scene, WayOrigin};
 use crate::placement::foothold::Foothold;
 use crate::placement::frame::Frame;
 use crate::placement::terrain::Terrain;
@@ -62,7 +62,7 @@ impl Foot {
         let here = (animated.flat, 0.0);
         let announced = animated.landing.map(|landing| (landing.flat, landing.secs));
         let ends = announced.or_else(|| animated.contact.then_some(here));
-        let follows = matches!(self.course, Course::Following(_));
+        let follows = matches!(self.origin, WayOrigin::Unplanned(_));
         if follows && ends.is_some() && self.plan.is_some() {
             self.join_way(scene, animated);
         }
@@ -85,7 +85,7 @@ impl Foot {
         let secs_left = planned.map(|((_, secs), _)| secs);
         self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
         if let (Some(lands), Some(((flat, secs), (toward, way)))) = (self.lands, planned) {
-            if self.course == Course::FromGround {
+            if self.origin == WayOrigin::Foothold {
                 let fall = (1.0 - way.even) * (self.lifted(scene).shift.y - toward.shift.y);
                 self.hurry(animated, &flat, secs, fall);
                 let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
@@ -138,7 +138,7 @@ impl Foot {
         self.lifted_from_m = scene.floor_m();
         self.left_from = Some(scene.world_from_floor.point(animated.flat.position));
         self.swing_secs = 0.0;
-        self.course = Course::FromAir;
+        self.origin = WayOrigin::Air;
     }
 
     /// Brings a foot that goes down by so much over its foothold early: its heel keeps clear of the edge behind it.
@@ -284,13 +284,13 @@ impl Foot {
         }
         // Along the plane that it follows it does so without delay.
         let place = scene.world_from_floor.point(animated.flat.position);
-        if let Course::Following(before) = self.course {
+        if let WayOrigin::Unplanned(before) = self.origin {
             let way = scene.world_from_floor.rotation.conjugate() * (place - before);
             let normal = self.correction.tilt * Vec3::Y;
             let along = (normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
             self.correction.shift.y -= along + way.y;
         }
-        self.course = Course::Following(place);
+        self.origin = WayOrigin::Unplanned(place);
         let share = 1.0 - (-scene.dt_secs / FOLLOW_SECS).exp();
         self.correction = self.correction.toward(&toward, share, share);
     }
