@@ -88,6 +88,15 @@ impl Climb {
         let skeleton = Skeleton::standard().scaled(self.body);
         let mut walker = walker(&skeleton, self.seed);
         walker.carrier = self.origin;
+        let controls = Controls {
+            speed_mps: self.speed_mps,
+            gait: if self.runs {
+                GaitChoice::Auto
+            } else {
+                GaitChoice::Walk
+            },
+            ..Controls::STAND
+        };
         let mut watcher = Watcher {
             leg: skeleton.mean_leg_length(),
             between: from..from + way.length(),
@@ -97,16 +106,6 @@ impl Climb {
         let mut between = 0;
         let longest = ((10.0 + 4.0 * goal) / DT) as usize;
         for frame in 0..longest {
-            let may_run = self.runs && !walker.placer.is_steep();
-            let controls = Controls {
-                speed_mps: self.speed_mps,
-                gait: if may_run {
-                    GaitChoice::Auto
-                } else {
-                    GaitChoice::Walk
-                },
-                ..Controls::STAND
-            };
             walker.climb(DT, controls, &mut terrain, self.announced);
             show(frame, &walker);
             watcher.see(frame, &walker, &terrain);

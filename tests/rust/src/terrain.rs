@@ -6,7 +6,7 @@ use footfall_ik::RockerFoot;
 use footfall_ik::placement::{
     FootPlacer, Frame, Ground, PlacementConfig, PlacementInput, SupportId, Terrain,
 };
-use footfall_synth::{Controls, GaitGenerator};
+use footfall_synth::{Controls, GaitChoice, GaitGenerator};
 use glam::{Quat, Vec3};
 
 /// Ground whose height is a function of the place, on a support that may move.
@@ -121,7 +121,7 @@ impl PlacedWalker {
         }
     }
 
-    /// Lets time pass for a character that a game carries over the ground and that slows down on slopes.
+    /// Lets time pass for a character that a game carries over the ground and that slows down on slopes and does not run on stairs.
     pub fn climb(
         &mut self,
         dt_secs: f32,
@@ -131,6 +131,11 @@ impl PlacedWalker {
     ) {
         let slowed = Controls {
             speed_mps: controls.speed_mps * self.placer.pace(),
+            gait: if self.placer.is_steep() {
+                GaitChoice::Walk
+            } else {
+                controls.gait
+            },
             ..controls
         };
         self.generator.set_grade(self.placer.way_grade());

@@ -33,7 +33,7 @@ use carry::Moment;
 pub use config::{PlacementConfig, PlacementInput};
 pub use contact::ContactThresholds;
 pub use foot::Landing;
-use foot::{Animated, Foot, Mode};
+use foot::{Animated, Foot, MAX_PITCH, Mode};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
 pub use frame::Frame;
@@ -68,6 +68,8 @@ pub struct FootPlacer {
     leg_lengths: [f32; 2],
     legs: [Leg; 2],
     rockers: [RockerFoot; 2],
+    /// Heights of the ankles of standing feet with their heels as high as they go.
+    highest_ankles_m: [f32; 2],
     feet: [Foot; 2],
     placed: [PlacedFoot; 2],
     /// Height in the world of the ground under the pelvis.
@@ -102,12 +104,18 @@ impl FootPlacer {
             landed: false,
             left: false,
         };
+        let rockers = Side::BOTH.map(|side| RockerFoot::new(skeleton, side));
+        let highest_ankles_m = [0, 1].map(|index| {
+            let rocker: &RockerFoot = &rockers[index];
+            rocker.ankle_height() + rocker.roll(MAX_PITCH).y
+        });
         Self {
             config: *config,
             hips_from_hip: Side::BOTH.map(|side| skeleton.offset(side.upper_leg())),
             leg_lengths: Side::BOTH.map(|side| skeleton.leg_length(side)),
             legs: Side::BOTH.map(|side| Leg::new(skeleton, side)),
-            rockers: Side::BOTH.map(|side| RockerFoot::new(skeleton, side)),
+            rockers,
+            highest_ankles_m,
             feet: [Foot::default(); 2],
             placed: [placed; 2],
             pelvis: Ride::default(),

@@ -1,7 +1,7 @@
 //! Runs over hills and blocks: where it is not steep they go on as runs, and hips, feet and knees go as smoothly as on level ground.
 
 use footfall_core::{Side, Skeleton};
-use footfall_synth::{Controls, GaitChoice};
+use footfall_synth::Controls;
 use footfall_tests::climb::{BODIES, Climb, DT, Outcome, Way, percentile, walker};
 use footfall_tests::terrain::Relief;
 use glam::Vec3;
@@ -131,11 +131,6 @@ fn jump_of_the_restless(way: Way, seed: u16) -> f32 {
                 0.0
             };
         }
-        controls.gait = if walker.placer.is_steep() {
-            GaitChoice::Walk
-        } else {
-            GaitChoice::Auto
-        };
         walker.climb(DT, controls, &mut terrain, true);
         ankles.push(Side::BOTH.map(|side| walker.world.position(side.foot())));
     }

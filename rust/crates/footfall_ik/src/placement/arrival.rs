@@ -4,7 +4,7 @@ use crate::leg::reach_height;
 use crate::placement::FootPlacer;
 use crate::placement::carry::{EASY_EXTENSION, Moment};
 use crate::placement::correction::Correction;
-use crate::placement::foot::{Landing, MAX_PITCH, Mode};
+use crate::placement::foot::{Landing, Mode};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
 use crate::placement::terrain::Terrain;
@@ -98,8 +98,7 @@ impl FootPlacer {
 
     /// Returns true when a foot no longer stands when the other lands, as in a run: no heel of a standing foot lifts its ankle so high.
     pub(super) fn is_off(&self, index: usize, landing: &Landing) -> bool {
-        let rocker = &self.rockers[index];
-        landing.ankles[index].y > rocker.ankle_height() + rocker.roll(MAX_PITCH).y
+        landing.ankles[index].y > self.highest_ankles_m[index]
     }
 }
 

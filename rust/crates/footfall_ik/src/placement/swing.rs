@@ -67,13 +67,21 @@ impl Foot {
             self.join_way(scene, animated);
         }
         let planned = ends.and_then(|end| Some((end, self.toward(scene, animated, &end.0)?)));
-        if let Some(((flat, secs), (toward, way))) = planned {
+        let secs_left = planned.map(|((_, secs), _)| secs);
+        let share = self.swing_secs / (self.swing_secs + secs_left.unwrap_or(0.0)).max(1e-3);
+        self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
+        if let (Some(lands), Some(((flat, secs), (toward, way)))) = (self.lands, planned) {
             self.over_ground = true;
-            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
             let from = self.lifted(scene);
             let start = self.start(scene, animated);
             let passed = passed(start, flat.position, animated.flat.position);
             (self.correction, lift) = way.at(&from, &toward, share, passed);
+            if self.origin == WayOrigin::Foothold {
+                let fall = (1.0 - way.even) * (from.shift.y - toward.shift.y);
+                self.hurry(animated, &flat, secs, fall);
+                self.hold_back(animated, [start, lands], [&from, &toward], share);
+            }
+            self.stay_before_edge(animated, [start, lands]);
         } else {
             self.dropped = None;
             self.follow(scene, rocker, animated);
@@ -82,22 +90,10 @@ impl Foot {
                 lift = REPLANT_LIFT_M * (PI * share).sin();
             }
         }
-        let secs_left = planned.map(|((_, secs), _)| secs);
-        self.lands = planned.map(|((flat, _), (toward, _))| flat.position + toward.shift);
-        if let (Some(lands), Some(((flat, secs), (toward, way)))) = (self.lands, planned) {
-            if self.origin == WayOrigin::Foothold {
-                let fall = (1.0 - way.even) * (self.lifted(scene).shift.y - toward.shift.y);
-                self.hurry(animated, &flat, secs, fall);
-                let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
-                self.hold_back(scene, animated, lands, &toward, share);
-            }
-            let start = self.start(scene, animated);
-            self.stay_before_edge(animated, start, lands);
-        }
         if let Some(dropped) = self.dropped.take() {
             // It turns to another foothold without a jump.
-            let went_on = Self::carried(&before, dropped, animated);
-            let turned = Self::carried(&self.correction, lift, animated);
+            let went_on = corrected(&before, dropped, animated, &animated.foot);
+            let turned = corrected(&self.correction, lift, animated, &animated.foot);
             self.residual = Residual::of(&self.residual.apply(&went_on), &turned);
         }
         self.lift = lift;
@@ -105,24 +101,15 @@ impl Foot {
         if let Some(((_, secs), _)) = planned
             && self.plan.is_some_and(|plan| plan.foothold.on_ball)
         {
-            let share = self.swing_secs / (self.swing_secs + secs).max(1e-3);
             level(rocker, animated, secs, share, &mut foot);
         }
-        let mut target = self.correction.apply(&animated.flat, &foot);
-        target.ankle.y += lift;
+        let mut target = corrected(&self.correction, lift, animated, &foot);
         self.guard(scene, rocker, animated, secs_left, &mut target);
         self.sole = Frame {
             position: animated.flat.position + self.correction.shift,
             rotation: (self.correction.tilt * animated.flat.rotation).normalize(),
         };
         target
-    }
-
-    /// The animation's foot with a correction and a lift.
-    fn carried(correction: &Correction, lift: f32, animated: &Animated) -> FootTarget {
-        let mut foot = correction.apply(&animated.flat, &animated.foot);
-        foot.ankle.y += lift;
-        foot
     }
 
     /// Place that the animation gave the foot when its way began, relative to its floor now.
@@ -151,16 +138,13 @@ impl Foot {
     }
 
     /// Holds a foot that rises over an edge above its last place, in the first part of the swing.
-    fn hold_back<T: Terrain>(
+    fn hold_back(
         &mut self,
-        scene: &Scene<'_, T>,
         animated: &Animated,
-        lands: Vec3,
-        toward: &Correction,
+        [start, lands]: [Vec3; 2],
+        [lifted, toward]: [&Correction; 2],
         share: f32,
     ) {
-        let start = self.start(scene, animated);
-        let lifted = self.lifted(scene);
         let way = lands - (start + lifted.shift);
         // A slope on which it stood goes on: it is no edge.
         let normal = lifted.tilt * Vec3::Y;
@@ -173,7 +157,7 @@ impl Foot {
     }
 
     /// Keeps a foot that swings past its foothold, and back to it, from the edge above that: it would be thrown over it.
-    fn stay_before_edge(&mut self, animated: &Animated, start: Vec3, lands: Vec3) {
+    fn stay_before_edge(&mut self, animated: &Animated, [start, lands]: [Vec3; 2]) {
         let rise = self.plan.map_or(0.0, |plan| plan.next_rise_m);
         let past = (animated.flat.position + self.correction.shift - lands).with_y(0.0);
         let forward = animated.flat.forward().with_y(0.0).normalize_or_zero();
@@ -308,4 +292,16 @@ fn level(rocker: &RockerFoot, animated: &Animated, secs: f32, share: f32, foot: 
     foot.ankle += animated.flat.rotation * roll;
     foot.foot = (foot.foot * turn).normalize();
     foot.toes = (foot.toes * turn).normalize();
+}
+
+/// A foot of the animation with a correction and a lift.
+fn corrected(
+    correction: &Correction,
+    lift: f32,
+    animated: &Animated,
+    foot: &FootTarget,
+) -> FootTarget {
+    let mut foot = correction.apply(&animated.flat, foot);
+    foot.ankle.y += lift;
+    foot
 }
