@@ -18,7 +18,7 @@ mod window;
 
 pub(crate) use fine_draw::FineDraw;
 pub(crate) use planner::Planner;
-pub(crate) use remainder::Remainder;
+pub(crate) use remainder::{Deadline, Remainder};
 pub(crate) use statistics::Statistics;
 pub(crate) use step_draw::{MAX_COMPONENTS, StepDraw};
 pub(crate) use step_plan::{MAX_STEP_SECS, StepPlan, StepShape};

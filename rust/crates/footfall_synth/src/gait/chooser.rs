@@ -2,8 +2,8 @@
 
 use super::direction::pelvis_turn;
 use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
-use super::pace::PaceTable;
-use super::request::{Manner, StepControls, StepRequest};
+use super::pace::{Pace, PaceTable};
+use super::request::{Manner, Passed, StepControls, StepRequest};
 use super::stand::Amplitude;
 use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
 use crate::detail::Detail;
@@ -76,13 +76,7 @@ impl StepChooser {
         let gait = self.gait(controls, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
         let (mut pace, facing) = match (gait, &self.run) {
-            (Gait::Run, Some(run)) => {
-                let speed = velocity_mps.length();
-                // A runner faces the direction of travel.
-                let direction = velocity_mps.x.atan2(velocity_mps.y);
-                let facing = run.facing + direction;
-                (run.pace(f64::from(speed)), facing)
-            }
+            (Gait::Run, Some(run)) => run_towards(run, *velocity_mps),
             _ => (
                 self.walk.pace_towards(*velocity_mps),
                 self.walk.facing + pelvis_turn(*velocity_mps),
@@ -107,24 +101,38 @@ impl StepChooser {
         (request, gait)
     }
 
-    /// Returns the request for the remainder of a walked step when the controls change within it. `before` is its request, `frames` its whole length and
-    /// `passed` the share that is over. The remainder takes no longer than planned. A walker that is to stop brings the feet together, provided that the hips
-    /// are behind the standing foot and need not brake too hard; otherwise the next step does so.
+    /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned. A walker that is to stop brings the feet together, provided that the hips
+    /// are behind the standing foot and need not brake too hard; otherwise the next step does so. A runner goes on running until the step ends.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
+        gait: Gait,
         before: &StepRequest,
-        frames: f64,
-        passed: f64,
+        passed: &Passed,
         velocity_mps: &mut Vec2,
     ) -> StepRequest {
-        let secs = frames / self.frame_rate_hz;
-        let left = (1.0 - passed) * secs;
+        if let (Gait::Run, Some(run)) = (gait, &self.run) {
+            let most = gait.most_change_mps() * (1.0 - passed.borne);
+            *velocity_mps = controls.velocity_within(passed.velocity_mps, most);
+            let (pace, facing) = run_towards(run, *velocity_mps);
+            return StepRequest {
+                manner: Manner {
+                    pace,
+                    ..before.manner
+                },
+                turn_rate: controls.turn_rate,
+                velocity_mps: *velocity_mps,
+                facing,
+                ..*before
+            };
+        }
+        let secs = passed.whole_frames / self.frame_rate_hz;
+        let left = (1.0 - passed.share) * secs;
         let braking = f64::from(velocity_mps.length()) / left;
         let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
         let closes = controls
             .closes
-            .unwrap_or(passed < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
+            .unwrap_or(passed.share < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
         if controls.amplitude.to < 1.0 && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
@@ -204,4 +212,13 @@ impl StepChooser {
             ..self.walking_request(detail)
         }
     }
+}
+
+/// Returns the pace of a run at this velocity to the left and forwards, and its facing: a runner faces the direction of travel.
+fn run_towards(run: &PaceTable, velocity_mps: Vec2) -> (Pace, f32) {
+    let direction = velocity_mps.x.atan2(velocity_mps.y);
+    (
+        run.pace(f64::from(velocity_mps.length())),
+        run.facing + direction,
+    )
 }

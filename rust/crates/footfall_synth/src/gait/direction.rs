@@ -14,6 +14,10 @@ const FULL_TURN_SPEED_MPS: f32 = 0.4;
 const MAX_SIDE_STEP: f32 = 0.38;
 const MAX_BACK_STEP: f32 = 0.6;
 
+/// Increase of the longest step to the side between these speeds, m/s: quicker steps alone would be too quick.
+const LONGER_SIDE_STEP: f32 = 0.07;
+const LONGER_MPS: [f32; 2] = [1.0, 1.4];
+
 /// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
 ///
 /// Zero along the axes: the pelvis faces forwards in steps forwards, sideways and backwards.
@@ -26,7 +30,9 @@ pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
 /// Length of a step of this velocity on legs of this length, as a multiple of the longest possible step.
 pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
     let step = seen_from_pelvis(velocity_mps) * step_secs / leg;
-    Vec2::new(step.x / MAX_SIDE_STEP, step.y.min(0.0) / MAX_BACK_STEP).length()
+    let fast = (velocity_mps.length() - LONGER_MPS[0]) / (LONGER_MPS[1] - LONGER_MPS[0]);
+    let side = MAX_SIDE_STEP + LONGER_SIDE_STEP * fast.clamp(0.0, 1.0);
+    Vec2::new(step.x / side, step.y.min(0.0) / MAX_BACK_STEP).length()
 }
 
 /// Returns the velocity relative to the turned pelvis. Headings are positive to the left, where x points; angles of vectors are from x to y.

@@ -90,3 +90,16 @@ pub(crate) struct StepRequest {
     /// Rise of the hips in a leap, metres; `None` for other steps.
     pub(crate) leap_m: Option<f32>,
 }
+
+/// Part of a step that has passed when the step is replanned.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Passed {
+    /// Frames of the whole step.
+    pub(crate) whole_frames: f64,
+    /// Share of it that has passed.
+    pub(crate) share: f64,
+    /// Share of the time in which a foot bears that has passed.
+    pub(crate) borne: f32,
+    /// Velocity to the left and forwards that the walker has reached by then, m/s.
+    pub(crate) velocity_mps: Vec2,
+}

@@ -2,7 +2,7 @@
 //!
 //! The leg is a spring under a mass: the force on it rises and falls as half a sine wave over the stance, and is nothing as the foot lands and as it takes
 //! off (Alexander and Jayes, Vertical movements in walking and running, 1978). So the hips are lowest in the middle of the stance, and nothing jolts where
-//! flight and stance meet.
+//! flight and stance meet. Where a step is replanned in its stance, the rest of the wave follows.
 
 use crate::gait::GRAVITY_MPS2;
 use core::f32::consts::PI;
@@ -13,31 +13,50 @@ pub(super) struct Bounce {
     fall_mps: f32,
     /// Speed that the leg's force gives, m/s.
     push_mps: f32,
-    secs: f32,
+    push: Push,
 }
 
 impl Bounce {
-    /// Makes a stance of this duration from a height, with the upward speeds at its beginning and its end.
-    pub(super) fn new(begin: f32, [fall_mps, rise_mps]: [f32; 2], secs: f32) -> Self {
+    /// Makes a stance from a height, with the upward speeds at its beginning and its end. `push` is in seconds.
+    pub(super) fn new(begin: f32, [fall_mps, rise_mps]: [f32; 2], push: Push) -> Self {
         Self {
             begin,
             fall_mps,
-            push_mps: rise_mps - fall_mps + GRAVITY_MPS2 * secs,
-            secs,
+            push_mps: rise_mps - fall_mps + GRAVITY_MPS2 * push.left,
+            push,
         }
     }
 
-    /// Returns the height at a time after the landing, metres.
+    /// Returns the height at a time after the beginning, metres.
     pub(super) fn height(&self, t: f32) -> f32 {
-        let pushed = self.push_mps * pushed(t, self.secs);
+        let pushed = self.push_mps * self.push.displacement(t);
         self.begin + self.fall_mps * t - 0.5 * GRAVITY_MPS2 * t * t + pushed
     }
 }
 
-/// Returns the displacement by the leg's force at the time `t` of a stance, per unit of the speed gained by its end. Both times have
-/// the same unit.
-pub(super) fn pushed(t: f32, stance: f32) -> f32 {
-    0.5 * (t - stance * (PI * t / stance).sin() / PI)
+/// Push of a leg in what is left of a stance.
+#[derive(Clone, Copy)]
+pub(super) struct Push {
+    /// Time of the stance that has passed, and that is left, in one unit.
+    pub(super) borne: f32,
+    pub(super) left: f32,
+}
+
+impl Push {
+    /// Returns the displacement by the leg's force a time from now, per unit of the speed that the force gives until the take-off.
+    pub(super) fn displacement(&self, t: f32) -> f32 {
+        let stance = self.borne + self.left;
+        let begun = PI * self.borne / stance;
+        let risen = (begun + PI * t / stance).sin() - begun.sin();
+        (t * begun.cos() - stance * risen / PI) / (1.0 + begun.cos())
+    }
+
+    /// Returns the displacement at the take-off.
+    pub(super) fn whole(&self) -> f32 {
+        let stance = self.borne + self.left;
+        let begun = PI * self.borne / stance;
+        (self.left * begun.cos() + stance * begun.sin() / PI) / (1.0 + begun.cos())
+    }
 }
 
 #[cfg(test)]
@@ -45,10 +64,14 @@ mod tests {
     use super::*;
 
     const SECS: f32 = 0.2;
+    const WHOLE: Push = Push {
+        borne: 0.0,
+        left: SECS,
+    };
 
     #[test]
     fn a_stance_goes_from_fall_to_rise_and_bears_nothing_at_its_ends() {
-        let bounce = Bounce::new(0.9, [-0.6, 0.4], SECS);
+        let bounce = Bounce::new(0.9, [-0.6, 0.4], WHOLE);
         let h = 0.01;
         let speed = |t: f32| (bounce.height(t + h) - bounce.height(t - h)) / (2.0 * h);
         let acceleration = |t: f32| {
@@ -63,8 +86,28 @@ mod tests {
     }
 
     #[test]
+    fn the_rest_of_a_stance_goes_on_as_the_whole_one() {
+        let whole = Bounce::new(0.9, [-0.6, 0.4], WHOLE);
+        let h = 1e-3;
+        for cut in [0.03, 0.1, 0.16] {
+            let fall = (whole.height(cut + h) - whole.height(cut - h)) / (2.0 * h);
+            let push = Push {
+                borne: cut,
+                left: SECS - cut,
+            };
+            let rest = Bounce::new(whole.height(cut), [fall, 0.4], push);
+            for part in [0.2, 0.5, 1.0] {
+                let t = part * push.left;
+                let off = rest.height(t) - whole.height(cut + t);
+                assert!(off.abs() < 2e-4, "{off} m after {t} s from {cut} s");
+            }
+            assert!((push.whole() - push.displacement(push.left)).abs() < 1e-6);
+        }
+    }
+
+    #[test]
     fn an_even_run_is_lowest_in_the_middle_of_its_stance() {
-        let bounce = Bounce::new(0.9, [-0.5, 0.5], SECS);
+        let bounce = Bounce::new(0.9, [-0.5, 0.5], WHOLE);
         let heights = (0..=20).map(|index| bounce.height(index as f32 * 0.05 * SECS));
         let lowest = heights.enumerate().min_by(|a, b| a.1.total_cmp(&b.1));
         assert_eq!(lowest.map(|(index, _)| index), Some(10));

@@ -41,11 +41,21 @@ impl Cut<'_> {
         let share = smooth_step(s);
         let velocity =
             |of: fn(&PlantedFrame) -> Vec3| Some((of(now) - of(before)) / self.frame_secs);
+        let earlier = self.frame.checked_sub(2).map(|frame| &self.frames[frame]);
+        let hips = |frame: &PlantedFrame| frame.pose.root_position;
+        // The leg of a runner accelerates the hips so much that half a frame counts.
+        let hips_velocity = match earlier {
+            Some(earlier) if self.timing.take_off.is_some() => {
+                let way = 3.0 * hips(now) - 4.0 * hips(before) + hips(earlier);
+                Some(way / (2.0 * self.frame_secs))
+            }
+            _ => velocity(hips),
+        };
         let swinging = self.timing.leading.other();
         PlanterState {
             plants: self.begun.plants,
-            hips: now.pose.root_position,
-            hips_velocity: velocity(|frame| frame.pose.root_position),
+            hips: hips(now),
+            hips_velocity,
             heading: now.heading,
             turn_rate: self.begun.turn_rate
                 + smooth_step(s / TURN_ONSET) * (self.turn_rate - self.begun.turn_rate),

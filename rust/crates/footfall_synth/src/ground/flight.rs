@@ -3,7 +3,7 @@
 //! Nothing but gravity acts then, so the hips go on at an even speed over the ground and on a parabola above it, from where the foot takes off to
 //! where the generated leg of the other foot has them as it lands. The foot that took off is on its swing; the next step brings it down.
 
-use super::bounce::Bounce;
+use super::bounce::{Bounce, Push};
 use super::frame::PlantedFrame;
 use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
@@ -90,7 +90,8 @@ impl Planter {
 
     /// Returns true when the step goes from flight to flight, as those of a steady run do.
     pub(super) fn runs_on(&self, timing: &StepTiming) -> bool {
-        timing.airborne && timing.take_off.is_some() && !self.leaps(timing)
+        let flown = timing.airborne && !timing.sets_off;
+        flown && timing.take_off.is_some() && !self.leaps(timing)
     }
 
     /// Returns true when the flight that ends the step is that of a leap.
@@ -110,7 +111,8 @@ impl Planter {
             return;
         };
         let take_off = if self.runs_on(timing) {
-            (BEARING_SHARE * take_off as f32).round() as usize
+            let bears = BEARING_SHARE * (timing.borne + take_off) as f32;
+            (bears.round() as usize).saturating_sub(timing.borne).max(1)
         } else {
             take_off
         };
@@ -123,15 +125,26 @@ impl Planter {
         let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
         let rise = match self.state.hips_velocity {
             Some(velocity) if self.runs_on(timing) => {
-                // A frame's velocity is that of half a frame earlier.
-                let fall = velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs;
+                // In flight a frame's velocity is that of half a frame earlier.
+                let fall = match timing.borne {
+                    0 => velocity.y - 0.5 * GRAVITY_MPS2 * self.frame_secs,
+                    _ => velocity.y,
+                };
                 let begin = self.state.hips.y;
                 let leaving = &generated[take_off].legs[timing.leading.index()];
                 let leaving = leaving.target.ankle.y - leaving.ankle.y;
                 let end = landing + LEAVING_SHARE * (leaving - landing);
-                let short = end - begin - 0.5 * (fall + even) * stance_secs;
-                let rise = limited(short / (0.5 * stance_secs + flight_secs));
-                let bounce = Bounce::new(begin, [fall, rise], stance_secs);
+                let push = Push {
+                    borne: timing.borne as f32 * self.frame_secs,
+                    left: stance_secs,
+                };
+                // The displacement per unit of a speed that is gained, and its excess over that of an even push.
+                let gained = push.whole();
+                let early = gained - 0.5 * stance_secs;
+                let risen =
+                    (fall + even) * gained + (GRAVITY_MPS2 * stance_secs - 2.0 * fall) * early;
+                let rise = limited((end - begin - risen) / (gained + flight_secs));
+                let bounce = Bounce::new(begin, [fall, rise], push);
                 for (index, frame) in out[..=take_off].iter_mut().enumerate() {
                     frame.pose.root_position.y = bounce.height(index as f32 * self.frame_secs);
                 }

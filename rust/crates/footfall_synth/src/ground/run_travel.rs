@@ -4,7 +4,7 @@
 //! into the flight, so that every step flies off in another direction. A runner's hips follow the direction of the run: they sway a little towards the
 //! bearing foot, are braked as it lands and accelerated as it leaves (Cavagna et al., The sources of external work in level walking and running, 1976).
 
-use super::bounce::pushed;
+use super::bounce::Push;
 use super::course::Course;
 use super::frame::PlantedFrame;
 use super::planter::Planter;
@@ -43,17 +43,24 @@ impl Planter {
             Side::Left => SWAY_MPS,
             Side::Right => -SWAY_MPS,
         };
+        let borne = timing.borne as f32;
+        let whole = borne + frames;
+        let phase = |time: f32| TAU * (borne + time) / whole;
         let before = velocity.with_y(0.0) * self.frame_secs;
         let after = along * pace - left * (towards * self.frame_secs);
         let stance = Stance {
-            before,
+            before: before + along * (BRAKING * pace * phase(0.0).sin()),
             after,
-            frames: take_off as f32,
+            push: Push {
+                borne,
+                left: take_off as f32,
+            },
         };
         let kept = course.change.weight;
+        let cycle = way * (whole / frames);
         for (index, frame) in out.iter_mut().enumerate() {
             let time = index as f32;
-            let braked = BRAKING * way / TAU * ((TAU * time / frames).cos() - 1.0);
+            let braked = BRAKING * cycle / TAU * (phase(time).cos() - phase(0.0).cos());
             let hips = &mut frame.pose.root_position;
             let moved = begin + stance.way(time) + along * braked - *hips;
             *hips += left * left.dot(moved) + along * ((1.0 - kept) * along.dot(moved));
@@ -66,14 +73,14 @@ struct Stance {
     /// Velocities at the beginning and the end of the stance, metres per frame.
     before: Vec3,
     after: Vec3,
-    frames: f32,
+    push: Push,
 }
 
 impl Stance {
     fn way(&self, time: f32) -> Vec3 {
-        let bears = time.min(self.frames);
+        let bears = time.min(self.push.left);
         self.before * bears
-            + (self.after - self.before) * pushed(bears, self.frames)
+            + (self.after - self.before) * self.push.displacement(bears)
             + self.after * (time - bears)
     }
 }

@@ -37,5 +37,6 @@ impl StepPlan<f32> {
         timing.terminal = terminal.clamp(1, whole - 2);
         timing.take_off = take_off.map(|last| last.clamp(2, whole - 1));
         timing.frames = whole;
+        timing.sets_off = runs;
     }
 }

@@ -7,9 +7,30 @@ use super::step_plan::StepPlan;
 use super::window::TIE;
 use footfall_model::STATES_PER_STEP;
 
-/// Last state in which a step can be replanned, and minimum number of frames left.
-const LAST_STATE: usize = 2;
+/// Minimum number of frames left of the step.
 const LEAST_FRAMES: usize = 6;
+
+/// Latest moment of a step at which it is replanned.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline {
+    last_state: usize,
+    /// Minimum number of frames left of a runner's stance.
+    bearing_frames: usize,
+}
+
+impl Deadline {
+    /// For a walker's own controls.
+    pub(crate) const OWN: Self = Self {
+        last_state: 2,
+        bearing_frames: 7,
+    };
+
+    /// For the controls of another machine, which come late: changes before this one may have been lost, so that other states have passed.
+    pub(crate) const LED: Self = Self {
+        last_state: 3,
+        bearing_frames: 3,
+    };
+}
 
 /// Position within a step at which its remainder begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,10 +43,17 @@ pub(crate) struct Remainder {
 }
 
 impl Remainder {
-    /// Returns the remainder of a plan from a frame on, after `before`; `None` when it is too late to replan.
-    pub(crate) fn of<R>(plan: &StepPlan<R>, frame: usize, before: Option<Self>) -> Option<Self> {
-        let frames = plan.shape.timing.frames;
-        if frame + LEAST_FRAMES > frames {
+    /// Returns the remainder of a plan from a frame on, after `before`; `None` after the deadline.
+    pub(crate) fn of<R>(
+        plan: &StepPlan<R>,
+        frame: usize,
+        before: Option<Self>,
+        deadline: Deadline,
+    ) -> Option<Self> {
+        let timing = &plan.shape.timing;
+        let frames = timing.frames;
+        let bears = |last: usize| frame + deadline.bearing_frames <= last;
+        if frame + LEAST_FRAMES > frames || !timing.take_off.is_none_or(bears) {
             return None;
         }
         let mut begins = 0;
@@ -37,7 +65,7 @@ impl Remainder {
         let whole = before.filter(|before| before.state == state);
         let left = (begins - frame) as f32 / *own as f32 * whole.map_or(1.0, |before| before.left);
         let passed = before.map_or(0.0, |before| before.passed);
-        (state <= LAST_STATE).then_some(Self {
+        (state <= deadline.last_state).then_some(Self {
             state,
             left,
             passed: passed + (1.0 - passed) * frame as f32 / frames as f32,
@@ -54,7 +82,8 @@ impl Remainder {
     /// Returns true when its values are valid.
     pub(crate) fn is_sensible(&self) -> bool {
         let shares = [self.left, self.passed];
-        self.state <= LAST_STATE && shares.iter().all(|share| (0.0..=1.0).contains(share))
+        self.state <= Deadline::LED.last_state
+            && shares.iter().all(|share| (0.0..=1.0).contains(share))
     }
 
     /// Reduces the plan of a whole step to the part that has not passed.
@@ -66,8 +95,13 @@ impl Remainder {
         let missing = LEAST_FRAMES.saturating_sub(frames);
         plan.state_frames[STATES_PER_STEP - 1] += missing;
         let timing = &mut plan.shape.timing;
+        timing.borne = timing.frames.saturating_sub(frames);
         timing.frames = frames + missing;
         timing.terminal = 1;
+        timing.take_off = timing.take_off.map(|last| {
+            let left = last.saturating_sub(timing.borne);
+            left.clamp(2, timing.frames - 1)
+        });
     }
 
     /// Reduces the plan of the cut step to the frames that its remainder is tied to.

@@ -72,6 +72,8 @@ impl StepShape {
                 frames,
                 terminal: terminal.clamp(1, frames - 2),
                 take_off,
+                sets_off: false,
+                borne: 0,
                 airborne: false,
                 rests: false,
             },
@@ -97,6 +99,7 @@ impl StepShape {
                 .timing
                 .take_off
                 .map(|last| (last / stride).clamp(2, frames - 1)),
+            borne: self.timing.borne / stride,
             ..self.timing
         }
     }

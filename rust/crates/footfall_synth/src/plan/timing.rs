@@ -13,6 +13,10 @@ pub(crate) struct StepTiming {
     pub(crate) terminal: usize,
     /// Last frame in which the leading foot of a run bears; from then until the end of the step both feet are in the air.
     pub(crate) take_off: Option<usize>,
+    /// True in the first step of a run.
+    pub(crate) sets_off: bool,
+    /// Frames of the leading foot's stance that had passed when the step was replanned; 0 for whole steps.
+    pub(crate) borne: usize,
     /// True when the other foot is in the air as the step begins, after it took off in the previous step.
     pub(crate) airborne: bool,
     /// True when both feet bear the body from the end of the step on.

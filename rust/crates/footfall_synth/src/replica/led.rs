@@ -6,7 +6,7 @@ use crate::controls::{Controls, GaitChoice};
 use crate::gait::{Amplitude, AppliedControls, Gait, StepControls};
 use crate::generator::GaitGenerator;
 use crate::ground::Displacement;
-use crate::plan::StepDraw;
+use crate::plan::{Deadline, StepDraw};
 use crate::source::{Aim, StepSource as _, Steps, StyledSteps, planner_of};
 use footfall_core::Side;
 
@@ -177,8 +177,9 @@ impl GaitGenerator {
         let in_time = wanted > before && wanted <= position;
         let frame = if in_time { wanted } else { position.floor() };
         let needed = in_time || must || steps.needs_replan(&step_controls);
-        let possible = steps.gait() == Gait::Walk && frame > 0.0;
-        let replanned = needed && possible && steps.replan_from(&step_controls, frame as usize);
+        let possible = !steps.leaps() && frame > 0.0;
+        let replanned =
+            needed && possible && steps.replan_from(&step_controls, frame as usize, Deadline::LED);
         if replanned {
             self.position -= frame;
         }

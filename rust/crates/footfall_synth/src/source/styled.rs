@@ -7,9 +7,9 @@ use super::window::StepWindow;
 use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::error::SynthError;
-use crate::gait::{AppliedControls, Gait, StepControls, StepRequest};
+use crate::gait::{AppliedControls, Gait, Passed, StepControls, StepRequest};
 use crate::ground::PlantedStep;
-use crate::plan::{Planner, StepShape, WINDOW};
+use crate::plan::{Deadline, Planner, StepShape, WINDOW};
 use footfall_core::{Side, Skeleton};
 use glam::Vec2;
 use std::sync::Arc;
@@ -85,20 +85,30 @@ impl StyledSteps {
         }
     }
 
+    /// Returns true when the current step is a leap.
+    pub(crate) fn leaps(&self) -> bool {
+        self.window.origin().request.leap_m.is_some()
+    }
+
     /// Replans the current step from a frame on; returns true if it did.
-    pub(crate) fn replan_from(&mut self, controls: &StepControls, frame: usize) -> bool {
+    pub(crate) fn replan_from(
+        &mut self,
+        controls: &StepControls,
+        frame: usize,
+        deadline: Deadline,
+    ) -> bool {
         // Styles may have changed since the step began.
         self.planner.set_model(&self.window.blends()[1].model);
-        let (measured, velocity) = (&self.measured, &mut self.velocity_mps);
-        let request = |before: &StepRequest, frames: f64, passed: f64| {
+        let (gait, measured, velocity) = (self.gait(), &self.measured, &mut self.velocity_mps);
+        let request = |before: &StepRequest, passed: &Passed| {
             measured
                 .chooser
-                .remainder_request(controls, before, frames, passed, velocity)
+                .remainder_request(controls, gait, before, passed, velocity)
         };
         let (planner, window) = (&mut self.planner, &mut self.window);
         let replanned = self
             .space
-            .with_buffers(|buffers| window.replan(planner, frame, request, buffers));
+            .with_buffers(|buffers| window.replan(planner, (frame, deadline), request, buffers));
         if replanned {
             self.applied = AppliedControls::of(controls);
         }
@@ -181,14 +191,16 @@ impl StepSource for StyledSteps {
     }
 
     fn needs_replan(&self, controls: &StepControls) -> bool {
-        !self.applied.stretched && self.applied.differs_from(controls) && self.gait() == Gait::Walk
+        // A runner who is to stop slows down in whole steps.
+        let stops = self.gait() == Gait::Run && controls.amplitude.to < 1.0;
+        !self.applied.stretched && !self.leaps() && !stops && self.applied.differs_from(controls)
     }
 
     fn replan(&mut self, controls: &StepControls, frame: usize) -> bool {
         if !self.needs_replan(controls) {
             return false;
         }
-        self.replan_from(controls, frame)
+        self.replan_from(controls, frame, Deadline::OWN)
     }
 }
 

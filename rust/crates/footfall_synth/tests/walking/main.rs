@@ -6,6 +6,7 @@
 mod climbing;
 mod jumping;
 mod quick;
+mod run_response;
 mod run_up;
 mod running;
 mod standing;

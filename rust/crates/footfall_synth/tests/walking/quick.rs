@@ -23,13 +23,13 @@ fn velocity(frames: &[Frame], at: usize) -> Vec3 {
 }
 
 /// Seconds from a frame until something is so of the velocity.
-fn secs_until(frames: &[Frame], from: usize, is_so: impl Fn(Vec3) -> bool) -> f32 {
+pub(crate) fn secs_until(frames: &[Frame], from: usize, is_so: impl Fn(Vec3) -> bool) -> f32 {
     let found = (from..frames.len()).find(|at| is_so(velocity(frames, *at)));
     found.map_or(f32::INFINITY, |at| (at - from) as f32 * DT)
 }
 
 /// The largest acceleration of a joint, m/s².
-fn hardest(frames: &[Frame], joint: Joint) -> f32 {
+pub(crate) fn hardest(frames: &[Frame], joint: Joint) -> f32 {
     let place = |frame: &Frame| frame.model.position(joint);
     let accelerations = frames
         .windows(3)

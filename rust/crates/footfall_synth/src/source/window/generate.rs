@@ -60,7 +60,11 @@ impl StepWindow {
         {
             remainder.keep(&mut self.plans[1]);
             let fine = self.plans[0].fine;
-            let manner = self.origin.manner_before;
+            let manner = if changes {
+                request.manner
+            } else {
+                self.origin.manner_before
+            };
             planner.plan_step(
                 &self.draws[1],
                 manner,
@@ -73,7 +77,7 @@ impl StepWindow {
     }
 
     /// Returns true when the current step goes over from one gait to another.
-    fn changes_gait(&self) -> bool {
+    pub(super) fn changes_gait(&self) -> bool {
         self.blend_before.gait != self.blend.gait
     }
 

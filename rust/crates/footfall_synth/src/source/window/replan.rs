@@ -3,31 +3,33 @@
 use super::generate::placing;
 use super::{Origin, StepWindow};
 use crate::detail::Detail;
-use crate::gait::{Amplitude, StepRequest};
+use crate::gait::{Amplitude, Passed, StepRequest};
 use crate::ground::Displacement;
-use crate::plan::{Planner, Remainder};
+use crate::plan::{Deadline, Planner, Remainder};
 use crate::source::buffers::StepBuffers;
 use footfall_core::ease::smooth_step;
 use std::sync::Arc;
 
 impl StepWindow {
     /// Replans the current step from a frame on, if one foot is in the air and enough of the step is left; returns true if it did. `request` derives the new
-    /// request from the current one, the frames of the whole step and the share that has passed.
+    /// request from the current one and the part of the step that has passed.
     pub(crate) fn replan(
         &mut self,
         planner: &mut Planner,
-        frame: usize,
-        request: impl FnOnce(&StepRequest, f64, f64) -> StepRequest,
+        (frame, deadline): (usize, Deadline),
+        request: impl FnOnce(&StepRequest, &Passed) -> StepRequest,
         buffers: &mut StepBuffers,
     ) -> bool {
         let shape = self.plans[1].shape;
         let before = self.origin.request;
-        let same = Arc::ptr_eq(&self.blend_before, &self.blend);
+        let changes_gait = self.changes_gait();
+        let same = changes_gait || Arc::ptr_eq(&self.blend_before, &self.blend);
         let usual = before.amplitude == Amplitude::WALK && before.manner.detail == Detail::Full;
         let (Some(begun), true) = (self.origin.planter, same && usual) else {
             return false;
         };
-        let Some(remainder) = Remainder::of(&self.plans[1], frame, self.origin.remainder) else {
+        let Some(remainder) = Remainder::of(&self.plans[1], frame, self.origin.remainder, deadline)
+        else {
             return false;
         };
         let blends = [&*self.blend_before, &*self.blend];
@@ -38,12 +40,29 @@ impl StepWindow {
         // The solved trajectory was not kept.
         self.solve(buffers);
         let tie = buffers.tie_at(frame);
-        let whole = shape.timing.frames as f64 / (1.0 - self.passed());
         let [facing_before, facing] = [self.origin.facing_before, before.facing];
-        let share = smooth_step(frame as f32 / shape.timing.frames as f32);
+        let timing = &shape.timing;
+        let share = frame as f32 / timing.frames as f32;
+        let passed = Passed {
+            whole_frames: timing.frames as f64 / (1.0 - self.passed()),
+            share: f64::from(remainder.passed),
+            borne: timing.take_off.map_or(remainder.passed, |last| {
+                (timing.borne + frame) as f32 / (timing.borne + last) as f32
+            }),
+            velocity_mps: self
+                .origin
+                .velocity_before_mps
+                .lerp(before.velocity_mps, share),
+        };
+        let share = smooth_step(share);
         self.origin = Origin {
-            request: request(&before, whole, f64::from(remainder.passed)),
-            manner_before: before.manner,
+            request: request(&before, &passed),
+            // A change of gait still comes from the pace of the previous one.
+            manner_before: if changes_gait {
+                self.origin.manner_before
+            } else {
+                before.manner
+            },
             facing_before: facing_before + share * (facing - facing_before),
             velocity_before_mps: before.velocity_mps,
             planter: Some(feet),

@@ -1,0 +1,116 @@
+//! Runners obey in the middle of a stance: turns, changes of speed, and steps in which the gait changes.
+
+use crate::quick::{hardest, secs_until};
+use crate::world::{
+    DT, Frame, Kind, assert_planted_within, config, generator, run, space, walking,
+};
+use core::f32::consts::FRAC_PI_2;
+use footfall_core::{Joint, Pose, Skeleton};
+use footfall_synth::{Controls, GaitGenerator};
+use glam::Vec3;
+
+/// Runners' feet roll in a third of the time of walkers'.
+const ROLLING_MPS: f32 = 0.05;
+
+/// Runs and then turns left by 90°, steered as `GaitCharacter3D` is; returns all frames.
+fn turned(seed: u64, speed_mps: f32, before: usize) -> Vec<Frame> {
+    let skeleton = Skeleton::standard();
+    let mut walker = generator(Kind::Styled, seed);
+    let (mut frames, _) = run(&mut walker, &skeleton, &walking(speed_mps), before);
+    for _ in 0..120 {
+        let left = FRAC_PI_2 - walker.start_from_character().heading;
+        let controls = Controls {
+            turn_rate_radps: (left / 0.35).clamp(-3.5, 3.5),
+            ..walking(speed_mps)
+        };
+        frames.extend(run(&mut walker, &skeleton, &controls, 1).0);
+    }
+    frames
+}
+
+#[test]
+fn a_runner_turns_within_half_a_second_and_no_farther_than_asked() {
+    const SPEED_MPS: f32 = 3.0;
+    let skeleton = Skeleton::standard();
+    let mut secs = Vec::new();
+    for seed in 1..5 {
+        for before in (200..222).step_by(3) {
+            let frames = turned(seed, SPEED_MPS, before);
+            secs.push(secs_until(&frames, before, |velocity| {
+                velocity.x > 0.8 * SPEED_MPS
+            }));
+            let headings = frames.iter().map(|frame| frame.heading);
+            let farthest = headings.fold(0.0, f32::max) - FRAC_PI_2;
+            assert!(farthest < 0.25, "seed {seed}: {farthest} rad too far");
+            assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+            let hardest = hardest(&frames[100..], Joint::Hips);
+            assert!(hardest < 30.0, "seed {seed}, {before}: hips {hardest} m/s²");
+        }
+    }
+    let mean = secs.iter().sum::<f32>() / secs.len() as f32;
+    assert!(mean < 0.55, "{mean} s");
+}
+
+#[test]
+fn a_change_in_the_middle_of_a_stance_is_obeyed_without_a_pop() {
+    let skeleton = Skeleton::standard();
+    let turning = Controls {
+        turn_rate_radps: 2.0,
+        ..walking(3.2)
+    };
+    for (index, controls) in [turning, walking(2.4), walking(4.0)].iter().enumerate() {
+        let mut sooner = 0;
+        for moment in 0..24 {
+            let mut walker = generator(Kind::Styled, 4);
+            let before = 151 + moment;
+            let (mut frames, _) = run(&mut walker, &skeleton, &walking(3.2), before);
+            let landing = walker.next_footstep().unwrap().0;
+            frames.extend(run(&mut walker, &skeleton, controls, 1).0);
+            let now = walker.next_footstep().unwrap().0;
+            let stays = landing.position - 3.2 * DT * Vec3::Z;
+            let moved = now.position.distance(stays) > 0.05;
+            let turned = (now.heading - landing.heading).abs() > 0.1;
+            sooner += usize::from(now.side == landing.side && (moved || turned));
+            frames.extend(run(&mut walker, &skeleton, controls, 90).0);
+            assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+            for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 55.0)] {
+                let hardest = hardest(&frames[100..], joint);
+                assert!(
+                    hardest < most,
+                    "{index}, {moment}: {joint:?} {hardest} m/s²"
+                );
+            }
+        }
+        assert!(
+            sooner > 4,
+            "{index}: obeyed in the same step at {sooner} of 24 moments"
+        );
+    }
+}
+
+#[test]
+fn a_run_that_was_planned_anew_goes_on_from_a_saved_state_bit_for_bit() {
+    let skeleton = Skeleton::standard();
+    let turning = |speed_mps: f32| Controls {
+        turn_rate_radps: 1.5,
+        ..walking(speed_mps)
+    };
+    // In a run, in the first step of one, and in the first step of a walk.
+    for [from, to] in [[3.0, 3.3], [1.4, 3.0], [3.0, 1.2]] {
+        for before in (150..178).step_by(3) {
+            let mut first = generator(Kind::Styled, 11);
+            run(&mut first, &skeleton, &walking(from), before);
+            run(&mut first, &skeleton, &walking(to), 14);
+            run(&mut first, &skeleton, &turning(to), 3);
+            let state = first.state();
+            let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(2)).unwrap();
+            second.restore(&state).unwrap();
+            let (mut a, mut b) = (Pose::default(), Pose::default());
+            for frame in 0..120 {
+                first.step(DT, &turning(to), &mut a);
+                second.step(DT, &turning(to), &mut b);
+                assert_eq!(a, b, "{from} to {to} m/s, {frame} frames after {before}");
+            }
+        }
+    }
+}
