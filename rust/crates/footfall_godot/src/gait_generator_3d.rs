@@ -82,7 +82,7 @@ pub(crate) struct GaitGenerator3D {
 
     /// Walking or running speed in metres per second. Cadence and step length follow as in people; `gait` sets when the character runs.
     ///
-    /// A change applies at once while a foot of a walk is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model
+    /// A change applies at once while one foot stands and the other is in the air, otherwise with the next step. `GaitModel.get_speed_range()` returns the speeds that the model
     /// was trained on. At 0 the character stops within two steps and stands, or turns on the spot by `turn_rate`.
     #[export(range = (0.0, 5.0, 0.01, or_greater, suffix = "m/s"))]
     #[var(set = set_speed)]

@@ -26,7 +26,8 @@ pub enum GaitChoice {
 }
 
 /// Requests to a walker. A walker with a foot in the air responds at once if enough of the step is left, otherwise with the next
-/// step. Runners, walkers in less than full detail and those of a [`DynamicsModel`](footfall_model::DynamicsModel) always respond with the next step.
+/// step; a runner does so in the first half of its stance. Runners that are to stop, walkers in less than full detail and those of a
+/// [`DynamicsModel`](footfall_model::DynamicsModel) always respond with the next step.
 ///
 /// A speed and turn rate near zero stop the walker within two steps; it stands until one of them rises. Turning without
 /// speed turns on the spot.
