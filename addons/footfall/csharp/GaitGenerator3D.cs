@@ -129,7 +129,7 @@ namespace Footfall
         }
 
         /// <summary>Walking or running speed in metres per second. Cadence and step length follow as in people; <see cref="Gait"/> sets when the character runs.</summary>
-        /// <remarks>A change applies at once while a foot of a walk is in the air, otherwise with the next step. <see cref="GaitModel.GetSpeedRange"/> returns the speeds that the model was trained on. At 0 the character stops within two steps and stands, or turns on the spot by <see cref="TurnRate"/>.</remarks>
+        /// <remarks>A change applies at once while one foot stands and the other is in the air, otherwise with the next step. <see cref="GaitModel.GetSpeedRange"/> returns the speeds that the model was trained on. At 0 the character stops within two steps and stands, or turns on the spot by <see cref="TurnRate"/>.</remarks>
         public double Speed
         {
             get => Native.Get(PropertyName.Speed).AsDouble();
