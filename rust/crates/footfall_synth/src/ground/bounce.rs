@@ -44,7 +44,7 @@ pub(super) struct Push {
 
 impl Push {
     /// Returns the displacement by the leg's force a time from now, per unit of the speed that the force gives until the take-off.
-    pub(super) fn displacement(&self, t: f32) -> f32 {
+    pub(super) fn displacement(self, t: f32) -> f32 {
         let stance = self.borne + self.left;
         let begun = PI * self.borne / stance;
         let risen = (begun + PI * t / stance).sin() - begun.sin();
@@ -52,7 +52,7 @@ impl Push {
     }
 
     /// Returns the displacement at the take-off.
-    pub(super) fn whole(&self) -> f32 {
+    pub(super) fn whole(self) -> f32 {
         let stance = self.borne + self.left;
         let begun = PI * self.borne / stance;
         (self.left * begun.cos() + stance * begun.sin() / PI) / (1.0 + begun.cos())
