@@ -101,8 +101,9 @@ impl StepChooser {
         (request, gait)
     }
 
-    /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned. A walker that is to stop brings the feet together, provided that the hips
-    /// are behind the standing foot and need not brake too hard; otherwise the next step does so. A runner goes on running until the step ends.
+    /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
+    /// A walker that is to stop brings the feet together, provided that the hips are behind the standing foot and need not brake too hard; otherwise the next
+    /// step does so. A runner goes on running until the step ends.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
