@@ -15,8 +15,9 @@ const GaitInput := preload("gait_input.gd")
 const GaitFigure := preload("gait_figure.gd")
 ## Time without a floor after which the character is in the air, seconds; shorter is a gap between two steps.
 const FALL_SECS := 0.12
-## Time in which the rest of a turn is turned, seconds.
+## Time in which the rest of a turn is turned, seconds, and time by which the steps go on turning after a request.
 const TURN_SECS := 0.35
+const TURN_LAG_SECS := 0.1
 ## Angles of a turn from which on the character slows down, and at which it has slowed down to the share below to turn on a planted foot, radians.
 const SLOW_FROM := 1.75
 const SLOWEST_FROM := 2.6
@@ -110,6 +111,8 @@ var _standing_height := 0.0
 ## True while the body still has to move in this frame, and the steps that it moves by.
 var _due := false
 var _steps := Transform3D.IDENTITY
+## Turn rate of the steps in the last frame, radians per second.
+var _turning := 0.0
 var _wish := Vector3.ZERO
 var _leaps := false
 ## True while the generator's jump has the body in the air, and the distance by which a wall has held it back from that.
@@ -242,7 +245,7 @@ func _steer() -> void:
 
 ## Turns towards the requested direction. The current step also turns while its foot is in the air.
 func _turn_by(angle: float) -> void:
-	var left := wrapf(angle, -PI, PI)
+	var left := wrapf(angle - TURN_LAG_SECS * _turning, -PI, PI)
 	var idle := gait.speed == 0.0 and absf(left) < LEAST_TURN
 	gait.turn_rate = 0.0 if idle else clampf(left / TURN_SECS, -max_turn_rate, max_turn_rate)
 
@@ -291,7 +294,9 @@ func _travel() -> void:
 	var from := global_position
 	move_and_slide()
 	_behind = (wanted - global_position + from) * Vector3(1, 0, 1) if _soars else Vector3.ZERO
-	rotation.y += _steps.basis.get_euler().y + get_platform_angular_velocity().y * delta
+	var turned := _steps.basis.get_euler().y
+	_turning = turned / delta
+	rotation.y += turned + get_platform_angular_velocity().y * delta
 	_steps = Transform3D.IDENTITY
 	_due = false
 	if not flies and not _soars:

@@ -17,9 +17,10 @@ const AFTER_SECS: f64 = 5.0;
 /// Walkers are asked at moments of their stride that differ by this, seconds.
 const APART_SECS: f64 = 0.083;
 
-/// Steering of a character that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, no faster than this, rad/s,
-/// and slows down for what lies between these angles, radians, to this share of its speed.
+/// Steering of a character that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, less what its steps go on turning
+/// meanwhile, no faster than this, rad/s, and slows down for what lies between these angles, radians, to this share of its speed.
 const TURN_SECS: f32 = 0.35;
+const TURN_LAG_SECS: f32 = 0.1;
 const MOST_TURN_RADPS: f32 = 3.5;
 const SLOWS_RAD: [f32; 2] = [1.75, 2.6];
 const SLOWEST: f32 = 0.3;
@@ -126,20 +127,20 @@ fn run_trial(
     let asks = frames(BEFORE_SECS + APART_SECS * seed as f64);
     let mut poses = Vec::new();
     let mut pose = Pose::default();
+    let mut heading_before = 0.0;
     for frame in 0..asks + frames(AFTER_SECS) {
         let asked = if frame < asks {
             course.before
         } else {
             course.after
         };
-        let left = wrap_angle(asked.turn - walker.start_from_character().heading);
-        let left = if asked.turn > 3.0 && left < -2.8 {
-            left + 2.0 * PI
-        } else {
-            left
-        };
+        let heading = walker.start_from_character().heading;
+        let turning = wrap_angle(heading - heading_before) * RATE_HZ as f32;
+        heading_before = heading;
+        let angle = wrap_angle(asked.turn - heading);
+        let left = wrap_angle(angle - TURN_LAG_SECS * turning);
         let controls = Controls {
-            speed_mps: asked.speed * pace(left),
+            speed_mps: asked.speed * pace(angle),
             turn_rate_radps: (left / TURN_SECS).clamp(-MOST_TURN_RADPS, MOST_TURN_RADPS),
             direction_rad: asked.direction,
             ..Controls::STAND
