@@ -2,6 +2,11 @@ class_name TestCase
 extends Node
 ## Base of test files: checks that note a failure and go on.
 
+## Factor by which time passes faster than the clock after [method begin_haste].
+const HASTE := 10
+## Frames of physics in a second of a game.
+const PHYSICS_HZ := 60
+
 ## Failures, each with the line of its check.
 var failures := PackedStringArray()
 ## Number of checks made.
@@ -37,6 +42,19 @@ func check_contains(text: String, part: String, what: String) -> void:
 	checks += 1
 	if not text.contains(part):
 		_fail("%s: \"%s\" is not in \"%s\"" % [what, part, text])
+
+
+## Lets frames of physics last as long as in a game, and come sooner, until [method end_haste].
+func begin_haste() -> void:
+	Engine.physics_ticks_per_second = PHYSICS_HZ * HASTE
+	Engine.max_physics_steps_per_frame = HASTE
+	Engine.time_scale = HASTE
+
+
+func end_haste() -> void:
+	Engine.physics_ticks_per_second = PHYSICS_HZ
+	Engine.max_physics_steps_per_frame = 8
+	Engine.time_scale = 1.0
 
 
 ## Errors and warnings between this and `end_expected_errors()` are provoked by the test.

@@ -2,22 +2,14 @@ extends TestCase
 ## The add-on's `GaitCharacter3D` as a game has it: physics, input, stairs, platforms, jumps.
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
-const RATE := 60.0
-## Factor by which time passes faster than the clock.
-const HASTE := 10
 
 
 func _ready() -> void:
-	# Frames of physics last as long as in a game, and come sooner.
-	Engine.physics_ticks_per_second = int(RATE) * HASTE
-	Engine.max_physics_steps_per_frame = HASTE
-	Engine.time_scale = HASTE
+	begin_haste()
 
 
 func _exit_tree() -> void:
-	Engine.physics_ticks_per_second = int(RATE)
-	Engine.max_physics_steps_per_frame = 8
-	Engine.time_scale = 1.0
+	end_haste()
 
 
 func _character(at := Vector3.ZERO, scene: PackedScene = Skinned.scene()) -> GaitCharacter3D:

@@ -2,22 +2,15 @@ extends TestCase
 ## Turns of a running `GaitCharacter3D`, asked for at different moments of its stride.
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
-const RATE := 60.0
-## Factor by which time passes faster than the clock.
-const HASTE := 10
 const SPEED := 3.2
 
 
 func _ready() -> void:
-	Engine.physics_ticks_per_second = int(RATE) * HASTE
-	Engine.max_physics_steps_per_frame = HASTE
-	Engine.time_scale = HASTE
+	begin_haste()
 
 
 func _exit_tree() -> void:
-	Engine.physics_ticks_per_second = int(RATE)
-	Engine.max_physics_steps_per_frame = 8
-	Engine.time_scale = 1.0
+	end_haste()
 
 
 func _frames(count: int) -> void:
@@ -42,7 +35,7 @@ func _turn(angle: float, frames_before: int) -> Array[float]:
 		if absf(beyond) < 0.5 * PI:
 			found[1] = maxf(found[1], beyond)
 		if found[0] == INF and character.velocity.dot(character.autopilot) > 0.8 * SPEED:
-			found[0] = frame / RATE
+			found[0] = float(frame) / PHYSICS_HZ
 	character.free()
 	return found
 

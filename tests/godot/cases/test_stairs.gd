@@ -3,7 +3,6 @@ extends TestCase
 
 const CONTROLLER: PackedScene = preload("res://addons/footfall/controller/gait_character_3d.tscn")
 const RATE := 60.0
-const HASTE := 10
 const STEPS := 6
 const RISE := 0.17
 const RUN := 0.29
@@ -14,9 +13,7 @@ const ANKLE := 0.035
 
 
 func _exit_tree() -> void:
-	Engine.physics_ticks_per_second = int(RATE)
-	Engine.max_physics_steps_per_frame = 8
-	Engine.time_scale = 1.0
+	end_haste()
 
 
 func _box(middle: Vector3, size: Vector3) -> void:
@@ -86,9 +83,7 @@ func test_who_follows_the_ground_climbs_from_every_distance() -> void:
 
 func test_the_controller_climbs_from_every_distance() -> void:
 	_stairs()
-	Engine.physics_ticks_per_second = int(RATE) * HASTE
-	Engine.max_physics_steps_per_frame = HASTE
-	Engine.time_scale = HASTE
+	begin_haste()
 	for index: int in 7:
 		var character: GaitCharacter3D = CONTROLLER.instantiate()
 		character.character_scene = Skinned.scene()
