@@ -16,8 +16,8 @@ const ORDERS: Array[Array] = [
 	[4.7, Vector3(9.4, 0, -3.2), 3.4, true],
 	[6.3, Vector3(0.6, TownPlan.RISE, -13.4), 1.4, false],
 	[12.0, Vector3.INF, 1.4, false],
-	[14.35, Vector3.INF, 1.4, true],
-	[15.5, Vector3.INF, 0.0, false],
+	[14.65, Vector3.INF, 1.4, true],
+	[15.8, Vector3.INF, 0.0, false],
 ]
 const SECS := 17.0
 
