@@ -75,13 +75,7 @@ impl StepChooser {
         }
         let gait = self.gait(controls, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
-        let (mut pace, facing) = match (gait, &self.run) {
-            (Gait::Run, Some(run)) => run_towards(run, *velocity_mps),
-            _ => (
-                self.walk.pace_towards(*velocity_mps),
-                self.walk.facing + pelvis_turn(*velocity_mps),
-            ),
-        };
+        let (mut pace, facing) = self.towards(gait, *velocity_mps);
         if gait == Gait::Walk && (sets_out || amplitude.to < 1.0) {
             let most = if sets_out { FIRST_SECS } else { LAST_SECS };
             pace = self.walk.within(pace, most);
@@ -112,21 +106,6 @@ impl StepChooser {
         passed: &Passed,
         velocity_mps: &mut Vec2,
     ) -> StepRequest {
-        if let (Gait::Run, Some(run)) = (gait, &self.run) {
-            let most = gait.most_change_mps() * (1.0 - passed.borne);
-            *velocity_mps = controls.velocity_within(passed.velocity_mps, most);
-            let (pace, facing) = run_towards(run, *velocity_mps);
-            return StepRequest {
-                manner: Manner {
-                    pace,
-                    ..before.manner
-                },
-                turn_rate: controls.turn_rate,
-                velocity_mps: *velocity_mps,
-                facing,
-                ..*before
-            };
-        }
         let secs = passed.whole_frames / self.frame_rate_hz;
         let left = (1.0 - passed.share) * secs;
         let braking = f64::from(velocity_mps.length()) / left;
@@ -134,25 +113,50 @@ impl StepChooser {
         let closes = controls
             .closes
             .unwrap_or(passed.share < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
-        if controls.amplitude.to < 1.0 && closes {
+        if gait == Gait::Walk && controls.amplitude.to < 1.0 && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
                 turn_rate: 0.0,
                 ..*before
             };
         }
-        let wanted = controls.velocity_after(*velocity_mps, Gait::Walk);
-        *velocity_mps = wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()));
-        let pace = self.walk.pace_towards(*velocity_mps);
+        *velocity_mps = match gait {
+            Gait::Walk => {
+                let wanted = controls.velocity_after(*velocity_mps, gait);
+                wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()))
+            }
+            Gait::Run => {
+                let most = gait.most_change_mps() * (1.0 - passed.borne);
+                controls.velocity_within(passed.velocity_mps, most)
+            }
+        };
+        let (mut pace, facing) = self.towards(gait, *velocity_mps);
+        if gait == Gait::Walk {
+            pace = self.walk.within(pace, secs);
+        }
         StepRequest {
             manner: Manner {
-                pace: self.walk.within(pace, secs),
+                pace,
                 ..before.manner
             },
             turn_rate: controls.turn_rate,
             velocity_mps: *velocity_mps,
-            facing: self.walk.facing + pelvis_turn(*velocity_mps),
+            facing,
             ..*before
+        }
+    }
+
+    /// Returns the pace and the facing for a velocity to the left and forwards, m/s. A runner faces the direction of travel.
+    fn towards(&self, gait: Gait, velocity_mps: Vec2) -> (Pace, f32) {
+        match (gait, &self.run) {
+            (Gait::Run, Some(run)) => (
+                run.pace(f64::from(velocity_mps.length())),
+                run.facing + velocity_mps.x.atan2(velocity_mps.y),
+            ),
+            _ => (
+                self.walk.pace_towards(velocity_mps),
+                self.walk.facing + pelvis_turn(velocity_mps),
+            ),
         }
     }
 
@@ -213,13 +217,4 @@ impl StepChooser {
             ..self.walking_request(detail)
         }
     }
-}
-
-/// Returns the pace of a run at this velocity to the left and forwards, and its facing: a runner faces the direction of travel.
-fn run_towards(run: &PaceTable, velocity_mps: Vec2) -> (Pace, f32) {
-    let direction = velocity_mps.x.atan2(velocity_mps.y);
-    (
-        run.pace(f64::from(velocity_mps.length())),
-        run.facing + direction,
-    )
 }

@@ -177,9 +177,9 @@ impl GaitGenerator {
         let in_time = wanted > before && wanted <= position;
         let frame = if in_time { wanted } else { position.floor() };
         let needed = in_time || must || steps.needs_replan(&step_controls);
-        let possible = !steps.leaps() && frame > 0.0;
-        let replanned =
-            needed && possible && steps.replan_from(&step_controls, frame as usize, Deadline::LED);
+        let replanned = needed
+            && frame > 0.0
+            && steps.replan_from(&step_controls, frame as usize, Deadline::LED);
         if replanned {
             self.position -= frame;
         }

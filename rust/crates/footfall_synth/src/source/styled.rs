@@ -85,11 +85,6 @@ impl StyledSteps {
         }
     }
 
-    /// Returns true when the current step is a leap.
-    pub(crate) fn leaps(&self) -> bool {
-        self.window.origin().request.leap_m.is_some()
-    }
-
     /// Replans the current step from a frame on; returns true if it did.
     pub(crate) fn replan_from(
         &mut self,
@@ -193,7 +188,7 @@ impl StepSource for StyledSteps {
     fn needs_replan(&self, controls: &StepControls) -> bool {
         // A runner who is to stop slows down in whole steps.
         let stops = self.gait() == Gait::Run && controls.amplitude.to < 1.0;
-        !self.applied.stretched && !self.leaps() && !stops && self.applied.differs_from(controls)
+        !self.applied.stretched && !stops && self.applied.differs_from(controls)
     }
 
     fn replan(&mut self, controls: &StepControls, frame: usize) -> bool {

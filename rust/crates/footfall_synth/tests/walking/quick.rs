@@ -97,6 +97,27 @@ fn a_stop_from_a_walk_takes_half_a_second() {
     assert!(closed > 20, "{closed} of {} close at once", secs.len());
 }
 
+/// Walks or runs, and then follows other controls. Returns all frames, and whether the same foot is at once to land elsewhere, by more than `moved_m`, or under
+/// another heading.
+pub(crate) fn interrupted(
+    speed_mps: f32,
+    before: usize,
+    controls: &Controls,
+    moved_m: f32,
+) -> (Vec<Frame>, bool) {
+    let skeleton = Skeleton::standard();
+    let mut walker = generator(Kind::Styled, 4);
+    let (mut frames, _) = run(&mut walker, &skeleton, &walking(speed_mps), before);
+    let landing = walker.next_footstep().unwrap().0;
+    frames.extend(run(&mut walker, &skeleton, controls, 1).0);
+    let now = walker.next_footstep().unwrap().0;
+    let stays = landing.position - speed_mps * DT * Vec3::Z;
+    let moved = now.position.distance(stays) > moved_m;
+    let turned = (now.heading - landing.heading).abs() > 0.1;
+    frames.extend(run(&mut walker, &skeleton, controls, 90).0);
+    (frames, now.side == landing.side && (moved || turned))
+}
+
 /// Controls change at every moment of a stride.
 #[test]
 fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {
@@ -113,20 +134,9 @@ fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {
     for (index, controls) in news.iter().enumerate() {
         let mut sooner = 0;
         for moment in 0..33 {
-            let mut walker = generator(Kind::Styled, 4);
             let before = 121 + 2 * moment;
-            let (mut frames, _) = run(&mut walker, &skeleton, &walking(1.3), before);
-            let landing = walker.next_footstep().unwrap();
-            frames.extend(run(&mut walker, &skeleton, controls, 1).0);
-            let now = walker.next_footstep().unwrap();
-            // The same foot is to land elsewhere, or under another heading.
-            let moved = now
-                .0
-                .position
-                .distance(landing.0.position - 1.3 * DT * Vec3::Z);
-            let turned = (now.0.heading - landing.0.heading).abs();
-            sooner += usize::from(now.0.side == landing.0.side && (moved > 0.03 || turned > 0.1));
-            frames.extend(run(&mut walker, &skeleton, controls, 90).0);
+            let (frames, obeyed) = interrupted(1.3, before, controls, 0.03);
+            sooner += usize::from(obeyed);
             assert_planted_within(&skeleton, &frames, 0.02);
             for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 50.0)] {
                 let hardest = hardest(&frames[100..], joint);

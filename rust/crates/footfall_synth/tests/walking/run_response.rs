@@ -1,18 +1,15 @@
 //! Runners obey in the middle of a stance: turns, changes of speed, and steps in which the gait changes.
 
-use crate::quick::{hardest, secs_until};
+use crate::quick::{hardest, interrupted, secs_until};
+use crate::running::ROLLING_MPS;
 use crate::world::{
     DT, Frame, Kind, assert_planted_within, config, generator, run, space, walking,
 };
 use core::f32::consts::FRAC_PI_2;
 use footfall_core::{Joint, Pose, Skeleton};
 use footfall_synth::{Controls, GaitGenerator};
-use glam::Vec3;
 
-/// Runners' feet roll in a third of the time of walkers'.
-const ROLLING_MPS: f32 = 0.05;
-
-/// Runs and then turns left by 90°, steered as `GaitCharacter3D` is; returns all frames.
+/// Runs and then turns left by 90°, steered by what is left of the turn; returns all frames.
 fn turned(seed: u64, speed_mps: f32, before: usize) -> Vec<Frame> {
     let skeleton = Skeleton::standard();
     let mut walker = generator(Kind::Styled, seed);
@@ -61,17 +58,8 @@ fn a_change_in_the_middle_of_a_stance_is_obeyed_without_a_pop() {
     for (index, controls) in [turning, walking(2.4), walking(4.0)].iter().enumerate() {
         let mut sooner = 0;
         for moment in 0..24 {
-            let mut walker = generator(Kind::Styled, 4);
-            let before = 151 + moment;
-            let (mut frames, _) = run(&mut walker, &skeleton, &walking(3.2), before);
-            let landing = walker.next_footstep().unwrap().0;
-            frames.extend(run(&mut walker, &skeleton, controls, 1).0);
-            let now = walker.next_footstep().unwrap().0;
-            let stays = landing.position - 3.2 * DT * Vec3::Z;
-            let moved = now.position.distance(stays) > 0.05;
-            let turned = (now.heading - landing.heading).abs() > 0.1;
-            sooner += usize::from(now.side == landing.side && (moved || turned));
-            frames.extend(run(&mut walker, &skeleton, controls, 90).0);
+            let (frames, obeyed) = interrupted(3.2, 151 + moment, controls, 0.05);
+            sooner += usize::from(obeyed);
             assert_planted_within(&skeleton, &frames, ROLLING_MPS);
             for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 55.0)] {
                 let hardest = hardest(&frames[100..], joint);

@@ -11,7 +11,7 @@ use std::sync::Arc;
 const GRAVITY_MPS2: f32 = 9.81;
 
 /// Runners' feet roll in a third of the time of walkers'.
-const ROLLING_MPS: f32 = 0.05;
+pub(crate) const ROLLING_MPS: f32 = 0.05;
 
 #[test]
 fn standing_feet_of_runners_do_not_move() {

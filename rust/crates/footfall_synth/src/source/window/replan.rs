@@ -24,7 +24,9 @@ impl StepWindow {
         let before = self.origin.request;
         let changes_gait = self.changes_gait();
         let same = changes_gait || Arc::ptr_eq(&self.blend_before, &self.blend);
-        let usual = before.amplitude == Amplitude::WALK && before.manner.detail == Detail::Full;
+        let usual = before.amplitude == Amplitude::WALK
+            && before.manner.detail == Detail::Full
+            && before.leap_m.is_none();
         let (Some(begun), true) = (self.origin.planter, same && usual) else {
             return false;
         };
