@@ -16,8 +16,8 @@ const GaitFigure := preload("gait_figure.gd")
 ## Time without a floor after which the character is in the air, seconds; shorter is a gap between two steps.
 const FALL_SECS := 0.12
 ## Time in which the rest of a turn is turned, seconds, and time by which the steps go on turning after a request.
-const TURN_SECS := 0.35
-const TURN_LAG_SECS := 0.1
+const TURN_SECS := 0.3
+const TURN_LAG_SECS := 0.2
 ## Angles of a turn from which on the character slows down, and at which it has slowed down to the share below to turn on a planted foot, radians.
 const SLOW_FROM := 1.75
 const SLOWEST_FROM := 2.6

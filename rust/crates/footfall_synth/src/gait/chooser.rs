@@ -8,11 +8,17 @@ use super::stand::Amplitude;
 use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
 use crate::detail::Detail;
 use footfall_core::StepPosition;
+use footfall_core::ease::smooth_step;
 use glam::Vec2;
 
 /// Maximum durations of the steps that start and end a walk, seconds.
 const FIRST_SECS: f64 = 0.45;
 const LAST_SECS: f64 = 0.4;
+
+/// Turn rates from which steps get quicker, and at which a walker plants a foot and turns about it, rad/s; and the maximum duration of such a step, seconds. In between the tempo changes
+/// evenly: peers over a network know turn rates in steps.
+const PIVOT_RADPS: [f32; 2] = [1.5, 2.5];
+const PIVOT_SECS: f64 = 0.45;
 
 /// Maximum speed at the end of a first step, m/s.
 const FIRST_MPS: f32 = 2.0;
@@ -76,9 +82,14 @@ impl StepChooser {
         let gait = self.gait(controls, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
         let (mut pace, facing) = self.towards(gait, *velocity_mps);
-        if gait == Gait::Walk && (sets_out || amplitude.to < 1.0) {
-            let most = if sets_out { FIRST_SECS } else { LAST_SECS };
-            pace = self.walk.within(pace, most);
+        if gait == Gait::Walk {
+            pace = if sets_out {
+                self.walk.within(pace, FIRST_SECS)
+            } else if amplitude.to < 1.0 {
+                self.walk.within(pace, LAST_SECS)
+            } else {
+                self.turning(pace, controls.turn_rate)
+            };
         }
         let request = StepRequest {
             manner: Manner {
@@ -113,7 +124,8 @@ impl StepChooser {
         let closes = controls
             .closes
             .unwrap_or(passed.share < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
-        if gait == Gait::Walk && controls.amplitude.to < 1.0 && closes {
+        let inside = before.amplitude == Amplitude::WALK;
+        if gait == Gait::Walk && inside && controls.amplitude.to < 1.0 && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
                 turn_rate: 0.0,
@@ -132,7 +144,7 @@ impl StepChooser {
         };
         let (mut pace, facing) = self.towards(gait, *velocity_mps);
         if gait == Gait::Walk {
-            pace = self.walk.within(pace, secs);
+            pace = self.turning(self.walk.within(pace, secs), controls.turn_rate);
         }
         StepRequest {
             manner: Manner {
@@ -158,6 +170,15 @@ impl StepChooser {
                 self.walk.facing + pelvis_turn(velocity_mps),
             ),
         }
+    }
+
+    /// Returns the pace of a walked step that turns.
+    fn turning(&self, mut pace: Pace, turn_rate_radps: f32) -> Pace {
+        let [from, to] = PIVOT_RADPS;
+        let share = smooth_step((turn_rate_radps.abs() - from) / (to - from));
+        let pivot = self.walk.within(pace, PIVOT_SECS);
+        pace.tempo += f64::from(share) * (pivot.tempo - pace.tempo);
+        pace
     }
 
     /// The gait of a step.

@@ -33,12 +33,17 @@ impl Amplitude {
     pub(crate) const WALK: Self = Self { from: 1.0, to: 1.0 };
     pub(crate) const STAND: Self = Self { from: 0.0, to: 0.0 };
 
-    /// Share of the walk at part `s` of the step.
-    pub(crate) fn at(self, s: f32) -> f32 {
+    /// Returns true in a step that starts a walk or goes on in it.
+    pub(crate) fn walks_on(self) -> bool {
+        self.to >= 1.0
+    }
+
+    /// Share of the walk at part `s` of a step that was replanned when the share `passed` of it had passed. A start goes on from there; a stop begins there.
+    pub(crate) fn at(self, s: f32, passed: f32) -> f32 {
         let progress = if self.to < self.from {
             s / SHRUNK_BY
         } else {
-            (s - GROWTH[0]) / (GROWTH[1] - GROWTH[0])
+            (passed + (1.0 - passed) * s - GROWTH[0]) / (GROWTH[1] - GROWTH[0])
         };
         self.from + smooth_step(progress) * (self.to - self.from)
     }
@@ -84,10 +89,21 @@ mod tests {
     fn amplitudes_begin_and_end_where_they_say() {
         for (from, to) in [(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (1.0, 1.0)] {
             let amplitude = Amplitude { from, to };
-            assert!((amplitude.at(0.0) - from).abs() < 1e-6);
-            assert!((amplitude.at(1.0) - to).abs() < 1e-6);
-            let halves = [amplitude.at(0.4), amplitude.at(0.6)];
+            assert!((amplitude.at(0.0, 0.0) - from).abs() < 1e-6);
+            assert!((amplitude.at(1.0, 0.0) - to).abs() < 1e-6);
+            let halves = [amplitude.at(0.4, 0.0), amplitude.at(0.6, 0.0)];
             assert!((halves[1] - halves[0]) * (to - from) >= 0.0);
         }
+    }
+
+    #[test]
+    fn a_start_that_is_replanned_goes_on_and_a_stop_begins() {
+        let start = Amplitude { from: 0.0, to: 1.0 };
+        for s in [0.0, 0.25, 0.5, 1.0] {
+            let whole = start.at(0.4 + 0.6 * s, 0.0);
+            assert!((start.at(s, 0.4) - whole).abs() < 1e-6);
+        }
+        let stop = Amplitude { from: 1.0, to: 0.0 };
+        assert_eq!([stop.at(0.0, 0.4), stop.at(1.0, 0.4)], [1.0, 0.0]);
     }
 }

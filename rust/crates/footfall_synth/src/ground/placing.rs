@@ -3,7 +3,7 @@
 use super::displacement::Displacement;
 use super::lean::Pull;
 use super::speed_change::SpeedChange;
-use crate::gait::{Amplitude, Posture};
+use crate::gait::Posture;
 use crate::plan::StepShape;
 use footfall_core::ease::smooth_step;
 use footfall_model::FEATURE_COUNT;
@@ -36,7 +36,7 @@ pub(crate) struct Placing<'a> {
 impl Placing<'_> {
     /// Returns the accelerations to lean against in a step of this duration. Runs lean into turns, too; sidesteps do not lean.
     pub(super) fn pull(&self, secs: f32) -> Pull {
-        let Amplitude { from, to } = self.shape.amplitude;
+        let [from, to] = [0.0, 1.0].map(|s| self.amplitude_at(s));
         let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
         Pull {
             within: Vec2::new(0.0, (after.y - before.y) / secs),
@@ -46,7 +46,7 @@ impl Placing<'_> {
 
     /// Returns the change of speed from the previous step to the end of this one.
     pub(super) fn change(&self) -> SpeedChange {
-        let Amplitude { from, to } = self.shape.amplitude;
+        let [from, to] = [0.0, 1.0].map(|s| self.amplitude_at(s));
         let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
         if self.passed > 0.0 {
             // A remainder has no surge of its own.
@@ -55,9 +55,14 @@ impl Placing<'_> {
         change
     }
 
+    /// Returns the share of the walk at part `s` of the step.
+    fn amplitude_at(&self, s: f32) -> f32 {
+        self.shape.amplitude.at(s, self.passed)
+    }
+
     /// Returns the standing posture at part `s` of the step, and its blend with the walk.
     pub(super) fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
-        let amplitude = self.shape.amplitude.at(s);
+        let amplitude = self.amplitude_at(s);
         let change = smooth_step(s);
         let mut standing = *self.standing[0];
         let mut grown = [0.0; FEATURE_COUNT];

@@ -3,7 +3,8 @@
 use crate::world::{
     DT, Frame, Kind, assert_planted_within, config, generator, run, space, walking,
 };
-use core::f32::consts::{PI, TAU};
+use core::f32::consts::{FRAC_PI_2, PI, TAU};
+use footfall_core::rotation::wrap_angle;
 use footfall_core::{Joint, Pose, Skeleton};
 use footfall_synth::{Controls, GaitGenerator};
 use glam::Vec3;
@@ -35,6 +36,33 @@ pub(crate) fn hardest(frames: &[Frame], joint: Joint) -> f32 {
         .windows(3)
         .map(|at| (place(&at[2]) - 2.0 * place(&at[1]) + place(&at[0])).length() / (DT * DT));
     accelerations.fold(0.0, f32::max)
+}
+
+/// Fails when hips or head accelerate harder than these, m/s².
+pub(crate) fn assert_no_pop(frames: &[Frame], most_mps2: [f32; 2], when: &str) {
+    for (joint, most) in [Joint::Hips, Joint::Head].into_iter().zip(most_mps2) {
+        let hardest = hardest(frames, joint);
+        assert!(hardest < most, "{when}: {joint:?} {hardest} m/s²");
+    }
+}
+
+/// Fails when another walker, restored from the state of this one, does not go on as this one does, bit for bit.
+pub(crate) fn assert_restores(
+    mut first: GaitGenerator,
+    frames: usize,
+    controls: impl Fn(usize) -> Controls,
+    when: &str,
+) {
+    let skeleton = Skeleton::standard();
+    let state = first.state();
+    let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(2)).unwrap();
+    second.restore(&state).unwrap();
+    let (mut a, mut b) = (Pose::default(), Pose::default());
+    for frame in 0..frames {
+        first.step(DT, &controls(frame), &mut a);
+        second.step(DT, &controls(frame), &mut b);
+        assert_eq!(a, b, "{when}, {frame} frames later");
+    }
 }
 
 #[test]
@@ -105,9 +133,33 @@ pub(crate) fn interrupted(
     controls: &Controls,
     moved_m: f32,
 ) -> (Vec<Frame>, bool) {
+    let mut walker = generator(Kind::Styled, 4);
+    let (frames, _) = run(
+        &mut walker,
+        &Skeleton::standard(),
+        &walking(speed_mps),
+        before,
+    );
+    redirected((walker, frames), speed_mps, controls, moved_m)
+}
+
+/// Sets out from standing, and then follows other controls; returns what [`interrupted`] does.
+fn interrupted_start(speed_mps: f32, before: usize, controls: &Controls) -> (Vec<Frame>, bool) {
     let skeleton = Skeleton::standard();
     let mut walker = generator(Kind::Styled, 4);
-    let (mut frames, _) = run(&mut walker, &skeleton, &walking(speed_mps), before);
+    walker.stand();
+    let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 20);
+    frames.extend(run(&mut walker, &skeleton, &walking(speed_mps), before).0);
+    redirected((walker, frames), speed_mps, controls, 0.06)
+}
+
+fn redirected(
+    (mut walker, mut frames): (GaitGenerator, Vec<Frame>),
+    speed_mps: f32,
+    controls: &Controls,
+    moved_m: f32,
+) -> (Vec<Frame>, bool) {
+    let skeleton = Skeleton::standard();
     let landing = walker.next_footstep().unwrap().0;
     frames.extend(run(&mut walker, &skeleton, controls, 1).0);
     let now = walker.next_footstep().unwrap().0;
@@ -116,6 +168,53 @@ pub(crate) fn interrupted(
     let turned = (now.heading - landing.heading).abs() > 0.1;
     frames.extend(run(&mut walker, &skeleton, controls, 90).0);
     (frames, now.side == landing.side && (moved || turned))
+}
+
+/// Steers towards a heading as `GaitCharacter3D` does, by what is left of the turn less what the steps go on turning; returns the frames.
+pub(crate) fn turned_to(
+    walker: &mut GaitGenerator,
+    (heading, speed_mps): (f32, f32),
+    frames: usize,
+) -> Vec<Frame> {
+    let skeleton = Skeleton::standard();
+    let mut turned = Vec::with_capacity(frames);
+    let mut before = walker.start_from_character().heading;
+    for _ in 0..frames {
+        let now = walker.start_from_character().heading;
+        let turning = wrap_angle(now - before) / DT;
+        before = now;
+        let left = wrap_angle(heading - now);
+        let controls = Controls {
+            turn_rate_radps: ((left - 0.2 * turning) / 0.3).clamp(-3.5, 3.5),
+            ..walking(if left > 2.0 {
+                0.4 * speed_mps
+            } else {
+                speed_mps
+            })
+        };
+        turned.extend(run(walker, &skeleton, &controls, 1).0);
+    }
+    turned
+}
+
+/// The first step goes on turning no longer than it has to.
+#[test]
+fn whoever_sets_out_to_the_side_turns_no_farther_than_asked() {
+    let skeleton = Skeleton::standard();
+    for seed in 1..7 {
+        let mut walker = generator(Kind::Styled, seed);
+        walker.stand();
+        let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 40);
+        frames.extend(turned_to(&mut walker, (FRAC_PI_2, 1.3), 120));
+        let secs = secs_until(&frames, 40, |velocity| velocity.x > 0.8 * 1.3);
+        assert!(secs < 0.5, "seed {seed}: {secs} s");
+        let headings = frames[40..].iter().map(|frame| frame.heading);
+        let farthest = headings.fold(0.0, f32::max) - FRAC_PI_2;
+        assert!(farthest < 0.15, "seed {seed}: {farthest} rad too far");
+        assert_planted_within(&skeleton, &frames, 0.02);
+        let hardest = hardest(&frames, Joint::Hips);
+        assert!(hardest < 25.0, "seed {seed}: hips {hardest} m/s²");
+    }
 }
 
 /// Controls change at every moment of a stride.
@@ -138,17 +237,34 @@ fn a_change_in_the_middle_of_a_step_is_obeyed_without_a_pop() {
             let (frames, obeyed) = interrupted(1.3, before, controls, 0.03);
             sooner += usize::from(obeyed);
             assert_planted_within(&skeleton, &frames, 0.02);
-            for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 50.0)] {
-                let hardest = hardest(&frames[100..], joint);
-                assert!(
-                    hardest < most,
-                    "{index}, {moment}: {joint:?} {hardest} m/s²"
-                );
-            }
+            assert_no_pop(&frames[100..], [30.0, 50.0], &format!("{index}, {moment}"));
         }
         assert!(
             sooner > 6,
             "{index}: obeyed in the same step at {sooner} of 33 moments"
+        );
+    }
+}
+
+/// Controls change at every moment of the step in which a walker sets out.
+#[test]
+fn a_change_in_the_first_step_is_obeyed_without_a_pop() {
+    let skeleton = Skeleton::standard();
+    let turning = Controls {
+        turn_rate_radps: -2.0,
+        ..walking(1.3)
+    };
+    for (index, controls) in [turning, walking(0.5), walking(1.9)].iter().enumerate() {
+        let mut sooner = 0;
+        for moment in 1..27 {
+            let (frames, obeyed) = interrupted_start(1.3, moment, controls);
+            sooner += usize::from(obeyed);
+            assert_planted_within(&skeleton, &frames, 0.02);
+            assert_no_pop(&frames, [30.0, 50.0], &format!("{index}, {moment}"));
+        }
+        assert!(
+            sooner > 6,
+            "{index}: obeyed in the first step at {sooner} of 26 moments"
         );
     }
 }
@@ -160,16 +276,9 @@ fn whoever_turns_back_plants_a_foot_and_goes() {
         let mut walker = generator(Kind::Styled, seed);
         let before = 150 + 5 * seed as usize;
         let (mut frames, _) = run(&mut walker, &skeleton, &walking(1.3), before);
-        for _ in 0..180 {
-            let left = PI - walker.start_from_character().heading.rem_euclid(TAU);
-            let controls = Controls {
-                turn_rate_radps: (left / 0.35).clamp(-3.5, 3.5),
-                ..walking(if left > 2.0 { 0.5 } else { 1.3 })
-            };
-            frames.extend(run(&mut walker, &skeleton, &controls, 1).0);
-        }
+        frames.extend(turned_to(&mut walker, (PI, 1.3), 180));
         let secs = secs_until(&frames, before, |velocity| velocity.z < -0.8 * 1.3);
-        assert!(secs < 1.5, "seed {seed}: {secs} s");
+        assert!(secs < 1.4, "seed {seed}: {secs} s");
         let last = walker.start_from_character().heading.rem_euclid(TAU);
         assert!((last - PI).abs() < 0.1, "seed {seed}: faces {last}");
         assert_planted_within(&skeleton, &frames, 0.05);
@@ -216,18 +325,23 @@ fn a_step_that_was_planned_anew_goes_on_from_a_saved_state_bit_for_bit() {
         ..walking(1.6)
     };
     for before in [121, 127, 133, 139, 145, 151, 157] {
-        let mut first = generator(Kind::Styled, 11);
-        run(&mut first, &skeleton, &walking(1.2), before);
-        run(&mut first, &skeleton, &turning, 3);
-        let state = first.state();
-        let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(2)).unwrap();
-        second.restore(&state).unwrap();
-        let (mut a, mut b) = (Pose::default(), Pose::default());
-        for frame in 0..200 {
-            let controls = if frame < 40 { turning } else { walking(0.8) };
-            first.step(DT, &controls, &mut a);
-            second.step(DT, &controls, &mut b);
-            assert_eq!(a, b, "{frame} frames after {before}");
-        }
+        let mut walker = generator(Kind::Styled, 11);
+        run(&mut walker, &skeleton, &walking(1.2), before);
+        run(&mut walker, &skeleton, &turning, 3);
+        let controls = |frame| if frame < 40 { turning } else { walking(0.8) };
+        assert_restores(walker, 200, controls, &format!("{before} frames"));
+    }
+    // In the step in which it sets out.
+    for before in (10..22).step_by(3) {
+        let mut walker = generator(Kind::Styled, 11);
+        walker.stand();
+        run(&mut walker, &skeleton, &walking(1.2), before);
+        run(&mut walker, &skeleton, &turning, 3);
+        assert_restores(
+            walker,
+            90,
+            |_| turning,
+            &format!("{before} frames from standing"),
+        );
     }
 }

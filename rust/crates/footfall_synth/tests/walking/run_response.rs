@@ -1,27 +1,18 @@
 //! Runners obey in the middle of a stance: turns, changes of speed, and steps in which the gait changes.
 
-use crate::quick::{hardest, interrupted, secs_until};
+use crate::quick::{assert_no_pop, assert_restores, hardest, interrupted, secs_until, turned_to};
 use crate::running::ROLLING_MPS;
-use crate::world::{
-    DT, Frame, Kind, assert_planted_within, config, generator, run, space, walking,
-};
+use crate::world::{Frame, Kind, assert_planted_within, generator, run, walking};
 use core::f32::consts::FRAC_PI_2;
-use footfall_core::{Joint, Pose, Skeleton};
-use footfall_synth::{Controls, GaitGenerator};
+use footfall_core::{Joint, Skeleton};
+use footfall_synth::Controls;
 
 /// Runs and then turns left by 90°, steered by what is left of the turn; returns all frames.
 fn turned(seed: u64, speed_mps: f32, before: usize) -> Vec<Frame> {
     let skeleton = Skeleton::standard();
     let mut walker = generator(Kind::Styled, seed);
     let (mut frames, _) = run(&mut walker, &skeleton, &walking(speed_mps), before);
-    for _ in 0..120 {
-        let left = FRAC_PI_2 - walker.start_from_character().heading;
-        let controls = Controls {
-            turn_rate_radps: (left / 0.35).clamp(-3.5, 3.5),
-            ..walking(speed_mps)
-        };
-        frames.extend(run(&mut walker, &skeleton, &controls, 1).0);
-    }
+    frames.extend(turned_to(&mut walker, (FRAC_PI_2, speed_mps), 120));
     frames
 }
 
@@ -61,13 +52,7 @@ fn a_change_in_the_middle_of_a_stance_is_obeyed_without_a_pop() {
             let (frames, obeyed) = interrupted(3.2, 151 + moment, controls, 0.05);
             sooner += usize::from(obeyed);
             assert_planted_within(&skeleton, &frames, ROLLING_MPS);
-            for (joint, most) in [(Joint::Hips, 30.0), (Joint::Head, 55.0)] {
-                let hardest = hardest(&frames[100..], joint);
-                assert!(
-                    hardest < most,
-                    "{index}, {moment}: {joint:?} {hardest} m/s²"
-                );
-            }
+            assert_no_pop(&frames[100..], [30.0, 55.0], &format!("{index}, {moment}"));
         }
         assert!(
             sooner > 4,
@@ -86,19 +71,12 @@ fn a_run_that_was_planned_anew_goes_on_from_a_saved_state_bit_for_bit() {
     // In a run, in the first step of one, and in the first step of a walk.
     for [from, to] in [[3.0, 3.3], [1.4, 3.0], [3.0, 1.2]] {
         for before in (150..178).step_by(3) {
-            let mut first = generator(Kind::Styled, 11);
-            run(&mut first, &skeleton, &walking(from), before);
-            run(&mut first, &skeleton, &walking(to), 14);
-            run(&mut first, &skeleton, &turning(to), 3);
-            let state = first.state();
-            let mut second = GaitGenerator::new(&space(), &[], &skeleton, &config(2)).unwrap();
-            second.restore(&state).unwrap();
-            let (mut a, mut b) = (Pose::default(), Pose::default());
-            for frame in 0..120 {
-                first.step(DT, &turning(to), &mut a);
-                second.step(DT, &turning(to), &mut b);
-                assert_eq!(a, b, "{from} to {to} m/s, {frame} frames after {before}");
-            }
+            let mut walker = generator(Kind::Styled, 11);
+            run(&mut walker, &skeleton, &walking(from), before);
+            run(&mut walker, &skeleton, &walking(to), 14);
+            run(&mut walker, &skeleton, &turning(to), 3);
+            let when = format!("{from} to {to} m/s, {before} frames");
+            assert_restores(walker, 120, |_| turning(to), &when);
         }
     }
 }

@@ -3,7 +3,7 @@
 use super::generate::placing;
 use super::{Origin, StepWindow};
 use crate::detail::Detail;
-use crate::gait::{Amplitude, Passed, StepRequest};
+use crate::gait::{Passed, StepRequest};
 use crate::ground::Displacement;
 use crate::plan::{Deadline, Planner, Remainder};
 use crate::source::buffers::StepBuffers;
@@ -24,7 +24,7 @@ impl StepWindow {
         let before = self.origin.request;
         let changes_gait = self.changes_gait();
         let same = changes_gait || Arc::ptr_eq(&self.blend_before, &self.blend);
-        let usual = before.amplitude == Amplitude::WALK
+        let usual = before.amplitude.walks_on()
             && before.manner.detail == Detail::Full
             && before.leap_m.is_none();
         let (Some(begun), true) = (self.origin.planter, same && usual) else {

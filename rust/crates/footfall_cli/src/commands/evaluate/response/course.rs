@@ -19,8 +19,8 @@ const APART_SECS: f64 = 0.083;
 
 /// Steering of a character that is to face elsewhere, as `GaitCharacter3D` does: it turns what is left in so many seconds, less what its steps go on turning
 /// meanwhile, no faster than this, rad/s, and slows down for what lies between these angles, radians, to this share of its speed.
-const TURN_SECS: f32 = 0.35;
-const TURN_LAG_SECS: f32 = 0.1;
+const TURN_SECS: f32 = 0.3;
+const TURN_LAG_SECS: f32 = 0.2;
 const MOST_TURN_RADPS: f32 = 3.5;
 const SLOWS_RAD: [f32; 2] = [1.75, 2.6];
 const SLOWEST: f32 = 0.3;
@@ -69,9 +69,19 @@ const fn course(name: &'static str, before: Asked, after: Asked) -> Course {
     }
 }
 
-pub(super) const COURSE: [Course; 10] = [
+pub(super) const COURSE: [Course; 12] = [
     course("start to 1.3 m/s", straight(0.0), straight(1.3)),
     course("start to 3.0 m/s", straight(0.0), straight(3.0)),
+    course(
+        "90° from standing to 1.3",
+        straight(0.0),
+        turned(1.3, FRAC_PI_2),
+    ),
+    course(
+        "90° from standing to 3.0",
+        straight(0.0),
+        turned(3.0, FRAC_PI_2),
+    ),
     course("stop from 1.3 m/s", straight(1.3), straight(0.0)),
     course("stop from 3.4 m/s", straight(3.4), straight(0.0)),
     course("90° at 1.3 m/s", straight(1.3), turned(1.3, FRAC_PI_2)),
@@ -94,6 +104,8 @@ pub(super) struct Trial {
     pub(super) moved_secs: Option<f64>,
     /// The speed in the last two seconds, m/s.
     pub(super) speed_mps: f64,
+    /// Angle by which the body turned farther than asked, radians; `None` where it was not to turn.
+    pub(super) beyond_rad: Option<f32>,
     /// The hips' accelerations, m/s².
     pub(super) accelerations: Vec<f32>,
 }
@@ -128,6 +140,7 @@ fn run_trial(
     let mut poses = Vec::new();
     let mut pose = Pose::default();
     let mut heading_before = 0.0;
+    let mut beyond: f32 = 0.0;
     for frame in 0..asks + frames(AFTER_SECS) {
         let asked = if frame < asks {
             course.before
@@ -138,6 +151,9 @@ fn run_trial(
         let turning = wrap_angle(heading - heading_before) * RATE_HZ as f32;
         heading_before = heading;
         let angle = wrap_angle(asked.turn - heading);
+        if frame >= asks && angle.abs() < FRAC_PI_2 {
+            beyond = beyond.max(-angle);
+        }
         let left = wrap_angle(angle - TURN_LAG_SECS * turning);
         let controls = Controls {
             speed_mps: asked.speed * pace(angle),
@@ -164,6 +180,7 @@ fn run_trial(
         asked_secs: travel.secs_to(asked_at, wanted),
         moved_secs: moved(&travel, asked_at, course),
         speed_mps: f64::from(from.distance(to)) / ((last[1] - last[0]) as f64 / RATE_HZ),
+        beyond_rad: (course.after.turn > 0.0).then_some(beyond),
         accelerations: accelerations(&poses[asks..], RATE_HZ),
     })
 }

@@ -23,6 +23,8 @@ struct Row {
     asked_s: Option<[f64; 2]>,
     moved_s: Option<[f64; 2]>,
     speed_mps: f64,
+    /// Largest angle by which a body turned farther than asked, degrees; `None` where it was not to turn.
+    beyond_deg: Option<f32>,
     hips_acceleration_mps2: f32,
 }
 
@@ -58,12 +60,16 @@ impl Report {
     /// The table that people read.
     pub(super) fn table(&self) -> String {
         let mut text = String::from(
-            "generated               from the request, s   of the motion, s   speed, m/s   hips, m/s² (99.9 %)\n                         median    worst      median    worst\n",
+            "generated                from the request, s   of the motion, s   speed, m/s   too far   hips, m/s² (99.9 %)\n                          median    worst      median    worst\n",
         );
         for row in &self.generated {
             let pair = |pair: Option<[f64; 2]>| match pair {
                 Some([median, worst]) => format!("{median:8.2} {worst:8.2}"),
                 None => "       -        -".to_owned(),
+            };
+            let beyond = match row.beyond_deg {
+                Some(beyond) => format!("{beyond:8.0}°"),
+                None => "        -".to_owned(),
             };
             let never = match row.never {
                 0 => String::new(),
@@ -71,7 +77,7 @@ impl Report {
             };
             let _written = writeln!(
                 text,
-                "{:23} {} {}   {:9.2} {:14.1}{never}",
+                "{:24} {} {}   {:9.2} {beyond} {:14.1}{never}",
                 row.course,
                 pair(row.asked_s),
                 pair(row.moved_s),
@@ -121,6 +127,11 @@ impl Row {
             asked_s: median_and_worst(trials.iter().filter_map(|trial| trial.asked_secs)),
             moved_s: median_and_worst(trials.iter().filter_map(|trial| trial.moved_secs)),
             speed_mps: speeds / trials.len() as f64,
+            beyond_deg: trials
+                .iter()
+                .filter_map(|trial| trial.beyond_rad)
+                .reduce(f32::max)
+                .map(f32::to_degrees),
             hips_acceleration_mps2: high(all.collect()),
         }
     }
