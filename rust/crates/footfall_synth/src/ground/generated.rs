@@ -8,6 +8,12 @@ use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.25;
 
+/// Stride, as a share of a walk's, below which feet are lifted less, and the parts of their lift and pitch that are left on the spot: people who step or turn on the spot lift flat feet
+/// over knees bent by 35 to 45°, a walk's swing bends them by 65°.
+const LIFTED_STRIDE: f32 = 0.9;
+const SPOT_LIFT: f32 = 0.5;
+const SPOT_PITCH: f32 = 0.1;
+
 /// Reach of the legs in eight frames.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stride {
@@ -15,6 +21,41 @@ pub(crate) struct Stride {
     pub(crate) scale: f32x8,
     /// Share of the legs' length that is kept: with 1 shorter strides raise the hips, with 0 the height stays.
     pub(crate) upright: f32x8,
+}
+
+/// Lowering of the feet in eight frames of short strides.
+struct Lowering {
+    /// Parts of lift and pitch that are left.
+    lift: f32x8,
+    pitch: f32x8,
+}
+
+impl Lowering {
+    /// Returns the lowering for strides of these shares of a walk's; `None` if none is short.
+    fn of(stride: f32x8) -> Option<Self> {
+        let short = stride.simd_lt(f32x8::splat(LIFTED_STRIDE));
+        let share = (stride * LIFTED_STRIDE.recip()).fast_min(f32x8::ONE);
+        let spot = f32x8::ONE - share * share;
+        let left = |on_the_spot: f32| spot * (on_the_spot - 1.0) + f32x8::ONE;
+        short.any().then(|| Self {
+            lift: left(SPOT_LIFT),
+            pitch: left(SPOT_PITCH),
+        })
+    }
+
+    /// Returns the squared lengths of legs of which this was left, of a `straight` length.
+    fn lengthened(&self, squared: f32x8, straight: f32) -> f32x8 {
+        let straight = f32x8::splat(straight);
+        let length = straight - (straight - squared.sqrt()) * self.lift;
+        length * length
+    }
+
+    /// Turns feet of these pitches.
+    fn flattened(&self, feet: Quatx8, pitch: &mut f32x8) -> Quatx8 {
+        let before = *pitch;
+        *pitch *= self.pitch;
+        (feet * Quatx8::from_rotation_x(*pitch - before)).normalize()
+    }
 }
 
 /// One generated frame, hips at the origin and heading removed.
@@ -103,20 +144,26 @@ impl GeneratedFrame {
             };
             let offset = |joint: Joint| Vec3x8::splat(skeleton.offset(joint));
             let hips = of_poses(Joint::Hips);
+            let lowering = Lowering::of(scale);
             for side in Side::BOTH {
                 let thigh = hips * of_poses(side.upper_leg());
                 let shank = thigh * of_poses(side.lower_leg());
-                let foot = shank * of_poses(side.foot());
+                let mut foot = shank * of_poses(side.foot());
                 let hip = hips * offset(side.upper_leg());
                 let reach = thigh * offset(side.lower_leg()) + shank * offset(side.foot());
                 let [x, z] = [reach.x, reach.z * scale];
-                let squared = reach.x * reach.x + reach.y * reach.y + reach.z * reach.z;
+                let mut squared = reach.x * reach.x + reach.y * reach.y + reach.z * reach.z;
+                let mut free_pitch = foot_pitches(foot);
+                // A shorter stride lands flatter and pushes off less.
+                let pitch = settled_pitch(free_pitch * scale.fast_min(f32x8::ONE));
+                if let Some(lowering) = &lowering {
+                    let straight = skeleton.leg_length(side);
+                    squared = lowering.lengthened(squared, straight);
+                    foot = lowering.flattened(foot, &mut free_pitch);
+                }
                 let height = (squared - x * x - z * z).fast_max(squared * LEAST_HEIGHT);
                 let y = reach.y - (height.sqrt() + reach.y) * upright;
                 let ankle = hip + Vec3x8 { x, y, z };
-                let free_pitch = foot_pitches(foot);
-                // A shorter stride lands flatter and pushes off less.
-                let pitch = settled_pitch(free_pitch * scale.fast_min(f32x8::ONE));
                 let foot = foot.lanes();
                 for (lane, frame) in frames.iter_mut().enumerate() {
                     let leg = &mut frame.legs[side.index()];

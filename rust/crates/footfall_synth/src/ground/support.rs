@@ -30,6 +30,11 @@ const REACH_RELEASE_SECS: f32 = 0.05;
 /// share of the leg's length.
 const RELEASE_SHARE: f32 = 0.03;
 
+/// Share of the leg's length by which a foot is ahead of its hip while its heel bears, toes up, and the greatest pitch by which they are up there, radians. Behind the hip no heel bears: such
+/// a foot lies flat, and its heel can rise.
+const HEEL_BEARS_AHEAD: f32 = 0.1;
+const TOES_UP: f32 = 0.5;
+
 /// Pitch of a flat foot that has not passed its heel yet, radians: its heel is not to rise.
 const FLAT: f32 = -f32::EPSILON;
 
@@ -43,6 +48,8 @@ impl Planter {
         ];
         for (side, last) in stances {
             let Some(last) = last else { continue };
+            let ahead_m = HEEL_BEARS_AHEAD * self.leg_lengths[side.index()];
+            leave_heel(&mut generated[..=last], side, ahead_m);
             pass_flat(&mut generated[..=last], side);
             self.stand(side, &mut generated[..=last], |leg| Some(leg.pitch));
         }
@@ -228,6 +235,22 @@ impl Landing {
             hip: frame.level * generated.legs[side.index()].hip,
             ankle: free_foot(generated, side, hips, frame.level).ankle,
         }
+    }
+}
+
+/// Lays a standing foot flat by the time at which its hip has passed over it. In the first flat frame its heel does not rise yet.
+fn leave_heel(generated: &mut [GeneratedFrame], side: Side, ahead_m: f32) {
+    let mut before = 0.0;
+    for frame in generated {
+        let leg = &mut frame.legs[side.index()];
+        let ahead = ((leg.ankle.z - leg.hip.z) / ahead_m).max(0.0);
+        if ahead < 1.0 {
+            leg.pitch = leg.pitch.max(-TOES_UP * ahead);
+        }
+        if before < FLAT && leg.pitch == 0.0 {
+            leg.pitch = FLAT;
+        }
+        before = leg.pitch;
     }
 }
 

@@ -9,6 +9,7 @@ mod quick;
 mod run_response;
 mod run_up;
 mod running;
+mod slow;
 mod standing;
 mod strafing;
 mod world;
@@ -20,8 +21,8 @@ use footfall_synth::{
 };
 use glam::Vec3;
 use world::{
-    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, model, run, sole,
-    walker, walking,
+    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, knee, model, run,
+    sole, walker, walking,
 };
 
 #[test]
@@ -184,9 +185,7 @@ fn walkers_land_on_straight_legs() {
             for pair in frames.windows(2) {
                 for side in Side::BOTH {
                     if pair[1].contact[side.index()] && !pair[0].contact[side.index()] {
-                        let [hip, knee, ankle] = [side.upper_leg(), side.lower_leg(), side.foot()]
-                            .map(|joint| pair[1].model.position(joint));
-                        knees.push((knee - hip).angle_between(ankle - knee).to_degrees());
+                        knees.push(knee(&pair[1], side));
                     }
                 }
             }

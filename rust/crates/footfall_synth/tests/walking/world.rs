@@ -123,6 +123,13 @@ pub(crate) fn sole(skeleton: &Skeleton, frame: &Frame, side: Side) -> [Vec3; 3] 
     ]
 }
 
+/// Flexion of a knee, degrees.
+pub(crate) fn knee(frame: &Frame, side: Side) -> f32 {
+    let [hip, knee, ankle] =
+        [side.upper_leg(), side.lower_leg(), side.foot()].map(|joint| frame.model.position(joint));
+    (knee - hip).angle_between(ankle - knee).to_degrees()
+}
+
 /// A standing foot keeps one of heel, ball and toe tip where it is; nothing sinks.
 pub(crate) fn assert_planted(skeleton: &Skeleton, frames: &[Frame]) {
     assert_planted_within(skeleton, frames, 0.02);
