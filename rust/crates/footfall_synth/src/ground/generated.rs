@@ -31,11 +31,11 @@ struct Lowering {
 }
 
 impl Lowering {
-    /// Returns the lowering for strides of these shares of a walk's; `None` if none is short.
-    fn of(stride: f32x8) -> Option<Self> {
+    /// Returns the lowering for strides of these shares of a walk's; `None` if none is short. Steps to the side and backwards, less than `upright`, keep their lift.
+    fn of(stride: f32x8, upright: f32x8) -> Option<Self> {
         let short = stride.simd_lt(f32x8::splat(LIFTED_STRIDE));
         let share = (stride * LIFTED_STRIDE.recip()).fast_min(f32x8::ONE);
-        let spot = f32x8::ONE - share * share;
+        let spot = (f32x8::ONE - share * share) * upright;
         let left = |on_the_spot: f32| spot * (on_the_spot - 1.0) + f32x8::ONE;
         short.any().then(|| Self {
             lift: left(SPOT_LIFT),
@@ -144,7 +144,7 @@ impl GeneratedFrame {
             };
             let offset = |joint: Joint| Vec3x8::splat(skeleton.offset(joint));
             let hips = of_poses(Joint::Hips);
-            let lowering = Lowering::of(scale);
+            let lowering = Lowering::of(scale, upright);
             for side in Side::BOTH {
                 let thigh = hips * of_poses(side.upper_leg());
                 let shank = thigh * of_poses(side.lower_leg());
