@@ -120,6 +120,7 @@ pub(crate) fn plant(
         turn_rate: config.turn_rate_radps,
         facing: [facing; 2],
         keeps_lengths: true,
+        lands_softly: false,
         direction: Some(0.0),
         change: SpeedChange::default(),
         displacement: Displacement::NONE,

@@ -12,6 +12,8 @@ pub(crate) struct Course {
     pub(crate) facing: [f32; 2],
     /// True when standing legs keep their generated lengths; they do not in a step that ends in flight.
     pub(crate) keeps_lengths: bool,
+    /// True for a foot that lands slowly: a switching model's in a step to the side or backwards.
+    pub(crate) lands_softly: bool,
     /// Direction of a run relative to the facing direction, radians, positive to the left; `None` when the generated legs determine it.
     pub(crate) direction: Option<f32>,
     /// Change of speed within the step.

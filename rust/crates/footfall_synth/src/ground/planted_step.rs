@@ -145,10 +145,12 @@ impl PlantedStep {
         let planter = self.planter.get_or_insert_with(|| {
             Planter::new(&self.skeleton, frame_secs, &generated[0], &timing, facing)
         });
+        let ahead = [before, strafe] == [Strafe::NONE; 2];
         let course = Course {
             turn_rate: placing.turn_rate,
             facing: placing.facing,
-            keeps_lengths: placing.keeps_lengths && [before, strafe] == [Strafe::NONE; 2],
+            keeps_lengths: placing.keeps_lengths && ahead,
+            lands_softly: !placing.keeps_lengths && !ahead,
             direction: placing.direction,
             change: placing.change(),
             displacement: placing.displacement,

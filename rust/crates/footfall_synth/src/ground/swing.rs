@@ -25,6 +25,9 @@ const SETTLE_RATE: f32 = 8.0;
 /// Maximum landing speed of a walking and of a running foot, m/s: people brake their swing before the heel strikes.
 const MOST_LANDING_MPS: [f32; 2] = [1.2, 1.5];
 
+/// The same of a switching model's foot in a step to the side or backwards: at more, its knee is turned back within a frame as it lands.
+const SOFT_LANDING_MPS: f32 = 0.8;
+
 /// Maximum speed of descent of a walking foot as it lands, m/s.
 const MOST_DESCENT_MPS: f32 = 0.22;
 
@@ -82,14 +85,19 @@ impl Swing {
         ends: &[(FootTarget, FootTarget); 3],
         arrival: Vec3,
         timing: &StepTiming,
-        frame_secs: f32,
+        (frame_secs, lands_softly): (f32, bool),
     ) -> Self {
         let first = timing.terminal;
         let frames = (timing.frames - first).max(1) as f32;
         // The corrections have come to rest by then.
         let landing = ends[2].1.ankle - arrival;
         let runs = usize::from(timing.airborne);
-        let (most_landing_mps, braking_secs) = (MOST_LANDING_MPS[runs], BRAKING_SECS[runs]);
+        let (usual_mps, braking_secs) = (MOST_LANDING_MPS[runs], BRAKING_SECS[runs]);
+        let most_landing_mps = if lands_softly {
+            SOFT_LANDING_MPS
+        } else {
+            usual_mps
+        };
         let mut braked = landing.clamp_length_max(most_landing_mps * frame_secs);
         if !timing.airborne {
             braked.y = braked.y.max(-MOST_DESCENT_MPS * frame_secs);

@@ -1,7 +1,7 @@
 //! Facing one way and going another.
 
 use crate::world::{
-    DT, KINDS, Kind, assert_planted, assert_smooth, config, generator, run, walker,
+    DT, KINDS, Kind, assert_planted, assert_smooth, config, generator, run, sole, walker,
 };
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use footfall_core::rotation::{heading, wrap_angle};
@@ -107,7 +107,7 @@ fn the_body_goes_one_way_and_faces_another() {
 fn feet_stand_and_nothing_pops_in_any_direction() {
     for (kind, seed) in KINDS
         .into_iter()
-        .flat_map(|kind| [8, 9, 10, 11].map(|seed| (kind, seed)))
+        .flat_map(|kind| (1..21).map(move |seed| (kind, seed)))
     {
         let skeleton = Skeleton::standard();
         let mut all = Vec::new();
@@ -127,6 +127,29 @@ fn feet_stand_and_nothing_pops_in_any_direction() {
         assert_planted(&skeleton, &all);
         // A walk that becomes a sidestep takes a knee along a little harder than one that goes on.
         assert_smooth(&all, 0.04);
+    }
+}
+
+/// People who walk backwards lift their soles by 4 to 5 cm (Bandai's `walk_back`).
+#[test]
+fn flat_feet_are_not_lifted_high() {
+    let skeleton = Skeleton::standard();
+    let highest = |direction: f32, seed: u64| {
+        let mut walker = generator(Kind::Styled, seed);
+        let controls = going(direction, 0.8);
+        run(&mut walker, &skeleton, &controls, 200);
+        let (frames, _) = run(&mut walker, &skeleton, &controls, 500);
+        let heights = frames.iter().flat_map(|frame| {
+            Side::BOTH.map(|side| {
+                let points = sole(&skeleton, frame, side).map(|point| point.y);
+                points.into_iter().fold(f32::INFINITY, f32::min)
+            })
+        });
+        heights.fold(0.0, f32::max)
+    };
+    for (direction, most) in [(PI, 0.08), (FRAC_PI_2, 0.11)] {
+        let mean = (1..13).map(|seed| highest(direction, seed)).sum::<f32>() / 12.0;
+        assert!((0.02..most).contains(&mean), "{direction}: {mean} m");
     }
 }
 

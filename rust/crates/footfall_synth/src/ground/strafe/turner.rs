@@ -4,6 +4,7 @@ use super::Strafe;
 use crate::ground::frame::PlantedFrame;
 use crate::ground::generated::{GeneratedFrame, GeneratedLeg};
 use crate::plan::StepTiming;
+use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Side};
@@ -26,6 +27,10 @@ const LEAST_HEIGHT: f32 = 0.5;
 const BACKWARD_PITCH: f32 = 0.3;
 const BACKWARD_GAIN: f32 = 1.8;
 
+/// Share of the shortness of a swinging leg that is taken back in the middle of a swing to the side or backwards. Its foot stays flat, so its sole is higher than under the hanging toes of a
+/// walk forwards: 8 cm instead of the 4 to 5 cm of people who walk backwards.
+const LOWERED: f32 = 0.3;
+
 /// Part of the swing after which a foot is independent of its stance.
 const FREED_BY: f32 = 0.35;
 
@@ -46,6 +51,8 @@ pub(crate) struct Turner<'a> {
 struct Swing {
     /// Progress of the foot away from its stance, from 0 to 1.
     freed: f32,
+    /// From 0 at the ends of the swing to 1 in its middle.
+    middle: f32,
     /// Pitch at the mirrored time of the swing: backward steps swing as forward steps in reverse.
     mirrored: f32,
     /// Pitch at the landing.
@@ -63,7 +70,8 @@ impl Turner<'_> {
     ) {
         let trailing = timing.leading.other();
         let last = timing.frames;
-        let freed_by = FREED_BY * (last - timing.terminal) as f32;
+        let swing_frames = (last - timing.terminal) as f32;
+        let freed_by = FREED_BY * swing_frames;
         let landing = generated[last].legs[trailing.index()].free_pitch;
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let strafe = before.between(now, index as f32 / last as f32);
@@ -71,6 +79,9 @@ impl Turner<'_> {
             let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
             let swing = (index > timing.terminal).then(|| Swing {
                 freed: smooth_step((index - timing.terminal) as f32 / freed_by),
+                middle: (PI * (index - timing.terminal) as f32 / swing_frames)
+                    .sin()
+                    .powi(2),
                 mirrored,
                 landing,
             });
@@ -133,9 +144,20 @@ impl Turner<'_> {
             let tilted = leg.free_pitch.max(swing.landing.min(0.0));
             let free = place(foot.tilt(tilted)) + foot.tilt(swinging);
             ankle = ankle.lerp(free, swing.freed);
+            let lowered = LOWERED * swing.middle * (1.0 - strafe.uprightness());
+            ankle = self.lowered(ankle, leg.hip, lowered);
             pitch += swing.freed * (swinging - pitch);
         }
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
+    }
+
+    /// Lowers an ankle so that its leg is shorter than a straight one by this share less.
+    fn lowered(&self, ankle: Vec3, hip: Vec3, share: f32) -> Vec3 {
+        let reach = ankle - hip;
+        let length = reach.length();
+        let longer = length + share * (self.leg_length - length).max(0.0);
+        let down = longer * longer - reach.x * reach.x - reach.z * reach.z;
+        hip + Vec3::new(reach.x, -down.max(0.0).sqrt(), reach.z)
     }
 
     /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
