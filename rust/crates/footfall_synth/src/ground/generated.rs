@@ -43,14 +43,14 @@ impl Lowering {
         })
     }
 
-    /// Returns the squared lengths of legs of which this was left, of a `straight` length.
+    /// Returns the squared lengths of lowered legs of these squared lengths; `straight` is the length of a straight one.
     fn lengthened(&self, squared: f32x8, straight: f32) -> f32x8 {
         let straight = f32x8::splat(straight);
         let length = straight - (straight - squared.sqrt()) * self.lift;
         length * length
     }
 
-    /// Turns feet of these pitches.
+    /// Turns feet of these pitches to lower ones.
     fn flattened(&self, feet: Quatx8, pitch: &mut f32x8) -> Quatx8 {
         let before = *pitch;
         *pitch *= self.pitch;

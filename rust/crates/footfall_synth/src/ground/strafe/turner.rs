@@ -151,7 +151,7 @@ impl Turner<'_> {
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
     }
 
-    /// Lowers an ankle so that its leg is shorter than a straight one by this share less.
+    /// Lowers an ankle so that its leg gains this share of what it lacks of a straight one.
     fn lowered(&self, ankle: Vec3, hip: Vec3, share: f32) -> Vec3 {
         let reach = ankle - hip;
         let length = reach.length();
