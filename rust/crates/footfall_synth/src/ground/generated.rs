@@ -34,12 +34,14 @@ impl Lowering {
     /// Returns the lowering for strides of these shares of a walk's; `None` if none is short. Steps to the side and backwards, less than `upright`, keep their lift.
     fn of(stride: f32x8, upright: f32x8) -> Option<Self> {
         let short = stride.simd_lt(f32x8::splat(LIFTED_STRIDE));
-        let share = (stride * LIFTED_STRIDE.recip()).fast_min(f32x8::ONE);
-        let spot = (f32x8::ONE - share * share) * upright;
-        let left = |on_the_spot: f32| spot * (on_the_spot - 1.0) + f32x8::ONE;
-        short.any().then(|| Self {
-            lift: left(SPOT_LIFT),
-            pitch: left(SPOT_PITCH),
+        short.any().then(|| {
+            let share = (stride * LIFTED_STRIDE.recip()).fast_min(f32x8::ONE);
+            let spot = (f32x8::ONE - share * share) * upright;
+            let left = |on_the_spot: f32| spot * (on_the_spot - 1.0) + f32x8::ONE;
+            Self {
+                lift: left(SPOT_LIFT),
+                pitch: left(SPOT_PITCH),
+            }
         })
     }
 

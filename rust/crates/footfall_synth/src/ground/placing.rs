@@ -36,8 +36,7 @@ pub(crate) struct Placing<'a> {
 impl Placing<'_> {
     /// Returns the accelerations to lean against in a step of this duration. Runs lean into turns, too; sidesteps do not lean.
     pub(super) fn pull(&self, secs: f32) -> Pull {
-        let [from, to] = [0.0, 1.0].map(|s| self.amplitude_at(s));
-        let [before, after] = [from * self.velocity_before_mps, to * self.velocity_mps];
+        let [before, after] = self.ends_mps();
         Pull {
             within: Vec2::new(0.0, (after.y - before.y) / secs),
             after: Vec2::new(after.y * self.turn_rate, 0.0),
@@ -46,13 +45,21 @@ impl Placing<'_> {
 
     /// Returns the change of speed from the previous step to the end of this one.
     pub(super) fn change(&self) -> SpeedChange {
-        let [from, to] = [0.0, 1.0].map(|s| self.amplitude_at(s));
-        let change = SpeedChange::between(from * self.velocity_before_mps, to * self.velocity_mps);
+        let [before, after] = self.ends_mps();
+        let change = SpeedChange::between(before, after);
         if self.passed > 0.0 {
             // A remainder has no surge of its own.
             return change.whole();
         }
         change
+    }
+
+    /// Returns the velocities at the beginning and at the end of the step, m/s.
+    fn ends_mps(&self) -> [Vec2; 2] {
+        [
+            self.amplitude_at(0.0) * self.velocity_before_mps,
+            self.amplitude_at(1.0) * self.velocity_mps,
+        ]
     }
 
     /// Returns the share of the walk at part `s` of the step.

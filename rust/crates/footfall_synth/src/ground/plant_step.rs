@@ -115,12 +115,7 @@ impl Planter {
         let before = timing.frames - 1;
         let (hips, level) = (out[before].pose.root_position, out[before].level);
         let arrival = free_foot(&generated[before], trailing, hips, level).ankle;
-        let swing = Swing::new(
-            &ends,
-            arrival,
-            timing,
-            (self.frame_secs, course.lands_softly),
-        );
+        let swing = Swing::new(&ends, arrival, timing, self.frame_secs, course.lands_softly);
         let first = if timing.airborne {
             0
         } else {

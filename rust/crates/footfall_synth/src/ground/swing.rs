@@ -85,7 +85,8 @@ impl Swing {
         ends: &[(FootTarget, FootTarget); 3],
         arrival: Vec3,
         timing: &StepTiming,
-        (frame_secs, lands_softly): (f32, bool),
+        frame_secs: f32,
+        lands_softly: bool,
     ) -> Self {
         let first = timing.terminal;
         let frames = (timing.frames - first).max(1) as f32;

@@ -21,8 +21,8 @@ use footfall_synth::{
 };
 use glam::Vec3;
 use world::{
-    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, knee, model, run,
-    sole, walker, walking,
+    Frame, KINDS, Kind, assert_continuous, assert_planted, config, generator, landing_knees,
+    lowest, model, run, sole, walker, walking,
 };
 
 #[test]
@@ -182,13 +182,7 @@ fn walkers_land_on_straight_legs() {
             let mut generator = generator(Kind::Styled, seed);
             run(&mut generator, &skeleton, &walking(speed), 200);
             let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 400);
-            for pair in frames.windows(2) {
-                for side in Side::BOTH {
-                    if pair[1].contact[side.index()] && !pair[0].contact[side.index()] {
-                        knees.push(knee(&pair[1], side));
-                    }
-                }
-            }
+            knees.extend(landing_knees(&frames));
             let heights = frames
                 .iter()
                 .map(|frame| frame.model.position(Joint::Hips).y);
@@ -348,10 +342,7 @@ fn a_whole_walk_has_its_steps_its_speed_and_its_contacts() {
                 place: Vec3::ZERO,
             };
             let points = sole(&doubled.clip.skeleton, &frame, side);
-            let lowest = points
-                .iter()
-                .map(|point| point.y)
-                .fold(f32::INFINITY, f32::min);
+            let lowest = lowest(&points);
             assert!(lowest > -0.002, "sole at {lowest}");
             assert!(!stands || lowest < 0.005, "standing foot at {lowest}");
         }

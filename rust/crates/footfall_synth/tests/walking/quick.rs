@@ -65,14 +65,20 @@ pub(crate) fn assert_restores(
     }
 }
 
+/// A walker who has stood for some frames.
+fn stood(seed: u64, frames: usize) -> (GaitGenerator, Vec<Frame>) {
+    let mut walker = generator(Kind::Styled, seed);
+    walker.stand();
+    let (frames, _) = run(&mut walker, &Skeleton::standard(), &Controls::STAND, frames);
+    (walker, frames)
+}
+
 #[test]
 fn a_start_takes_one_step() {
     let skeleton = Skeleton::standard();
     for seed in 1..7 {
         for (speed, most) in [(1.3, 0.5), (3.0, 0.7)] {
-            let mut walker = generator(Kind::Styled, seed);
-            walker.stand();
-            let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 40);
+            let (mut walker, mut frames) = stood(seed, 40);
             frames.extend(run(&mut walker, &skeleton, &walking(speed), 120).0);
             let secs = secs_until(&frames, 40, |velocity| velocity.z > 0.8 * speed);
             assert!(secs < most, "seed {seed}: {secs} s to {speed} m/s");
@@ -146,9 +152,7 @@ pub(crate) fn interrupted(
 /// Sets out from standing, and then follows other controls; returns what [`interrupted`] does.
 fn interrupted_start(speed_mps: f32, before: usize, controls: &Controls) -> (Vec<Frame>, bool) {
     let skeleton = Skeleton::standard();
-    let mut walker = generator(Kind::Styled, 4);
-    walker.stand();
-    let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 20);
+    let (mut walker, mut frames) = stood(4, 20);
     frames.extend(run(&mut walker, &skeleton, &walking(speed_mps), before).0);
     redirected((walker, frames), speed_mps, controls, 0.06)
 }
@@ -202,9 +206,7 @@ pub(crate) fn turned_to(
 fn whoever_sets_out_to_the_side_turns_no_farther_than_asked() {
     let skeleton = Skeleton::standard();
     for seed in 1..7 {
-        let mut walker = generator(Kind::Styled, seed);
-        walker.stand();
-        let (mut frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 40);
+        let (mut walker, mut frames) = stood(seed, 40);
         frames.extend(turned_to(&mut walker, (FRAC_PI_2, 1.3), 120));
         let secs = secs_until(&frames, 40, |velocity| velocity.x > 0.8 * 1.3);
         assert!(secs < 0.5, "seed {seed}: {secs} s");

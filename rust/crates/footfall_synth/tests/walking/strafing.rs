@@ -1,7 +1,7 @@
 //! Facing one way and going another.
 
 use crate::world::{
-    DT, KINDS, Kind, assert_planted, assert_smooth, config, generator, run, sole, walker,
+    DT, KINDS, Kind, assert_planted, assert_smooth, config, generator, lowest, run, sole, walker,
 };
 use core::f32::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 use footfall_core::rotation::{heading, wrap_angle};
@@ -139,12 +139,9 @@ fn flat_feet_are_not_lifted_high() {
         let controls = going(direction, 0.8);
         run(&mut walker, &skeleton, &controls, 200);
         let (frames, _) = run(&mut walker, &skeleton, &controls, 500);
-        let heights = frames.iter().flat_map(|frame| {
-            Side::BOTH.map(|side| {
-                let points = sole(&skeleton, frame, side).map(|point| point.y);
-                points.into_iter().fold(f32::INFINITY, f32::min)
-            })
-        });
+        let heights = frames
+            .iter()
+            .flat_map(|frame| Side::BOTH.map(|side| lowest(&sole(&skeleton, frame, side))));
         heights.fold(0.0, f32::max)
     };
     for (direction, most) in [(PI, 0.08), (FRAC_PI_2, 0.11)] {

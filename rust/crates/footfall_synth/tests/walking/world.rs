@@ -130,6 +130,24 @@ pub(crate) fn knee(frame: &Frame, side: Side) -> f32 {
     (knee - hip).angle_between(ankle - knee).to_degrees()
 }
 
+/// Flexion of the knees in the frames in which their feet land, degrees.
+pub(crate) fn landing_knees(frames: &[Frame]) -> Vec<f32> {
+    let landings = frames.windows(2).flat_map(|pair| {
+        let lands = |side: &Side| pair[1].contact[side.index()] && !pair[0].contact[side.index()];
+        Side::BOTH
+            .into_iter()
+            .filter(lands)
+            .map(|side| knee(&pair[1], side))
+    });
+    landings.collect()
+}
+
+/// Height of the lowest of these points, metres.
+pub(crate) fn lowest(points: &[Vec3]) -> f32 {
+    let heights = points.iter().map(|point| point.y);
+    heights.fold(f32::INFINITY, f32::min)
+}
+
 /// A standing foot keeps one of heel, ball and toe tip where it is; nothing sinks.
 pub(crate) fn assert_planted(skeleton: &Skeleton, frames: &[Frame]) {
     assert_planted_within(skeleton, frames, 0.02);
@@ -144,10 +162,7 @@ pub(crate) fn assert_planted_within(skeleton: &Skeleton, frames: &[Frame], most:
                 sole(skeleton, &pair[0], side),
                 sole(skeleton, &pair[1], side),
             );
-            let lowest = now
-                .iter()
-                .map(|point| point.y)
-                .fold(f32::INFINITY, f32::min);
+            let lowest = lowest(&now);
             assert!(lowest > -0.002, "sole {lowest} m below the ground");
             if pair[0].contact[side.index()] && pair[1].contact[side.index()] {
                 standing += 1;
