@@ -10,13 +10,13 @@ const MAX_PELVIS_TURN: f32 = FRAC_PI_6;
 /// Speed below which the pelvis turns less, m/s: feet that hardly travel need no room.
 const FULL_TURN_SPEED_MPS: f32 = 0.4;
 
-/// Longest steps to the side and backwards, as shares of the leg. People's are shorter than those forwards.
-const MAX_SIDE_STEP: f32 = 0.38;
+/// Longest steps to the side at a slow and at a quick speed, and longest steps backwards, as shares of the leg. People's are shorter than those forwards. In between they grow with the
+/// speed: long slow steps would spread the legs for long, quicker short ones would be too quick.
+const MAX_SIDE_STEP: [f32; 2] = [0.26, 0.45];
 const MAX_BACK_STEP: f32 = 0.6;
 
-/// Increase of the longest step to the side between these speeds, m/s: quicker steps alone would be too quick.
-const LONGER_SIDE_STEP: f32 = 0.07;
-const LONGER_MPS: [f32; 2] = [1.0, 1.4];
+/// Those speeds, m/s.
+const SIDE_SPEED_MPS: [f32; 2] = [0.3, 1.4];
 
 /// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
 ///
@@ -30,8 +30,10 @@ pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
 /// Length of a step of this velocity on legs of this length, as a multiple of the longest possible step.
 pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
     let step = seen_from_pelvis(velocity_mps) * step_secs / leg;
-    let fast = (velocity_mps.length() - LONGER_MPS[0]) / (LONGER_MPS[1] - LONGER_MPS[0]);
-    let side = MAX_SIDE_STEP + LONGER_SIDE_STEP * fast.clamp(0.0, 1.0);
+    let [slow, quick] = SIDE_SPEED_MPS;
+    let quickness = ((velocity_mps.length() - slow) / (quick - slow)).clamp(0.0, 1.0);
+    let [short, long] = MAX_SIDE_STEP;
+    let side = short + quickness * (long - short);
     Vec2::new(step.x / side, step.y.min(0.0) / MAX_BACK_STEP).length()
 }
 

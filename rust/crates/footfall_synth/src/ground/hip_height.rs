@@ -15,7 +15,7 @@ use glam::Vec3Swizzles as _;
 const LEAST_HEIGHT: f32 = 0.25;
 
 /// Part of a step from which on the hips come to the height of the leg that lands.
-const MEETING_FROM: f32 = 0.15;
+pub(super) const MEETING_FROM: f32 = 0.15;
 
 impl Planter {
     /// Moves the hips in every frame of a walked step to the height at which the standing leg has its generated length.

@@ -23,6 +23,8 @@ impl Planter {
         let before = self.state.strafe;
         if [before, strafe] != [Strafe::NONE; 2] {
             let leg_length = self.leg_lengths[timing.leading.index()];
+            // The rest of a step says little about the length of a whole one.
+            let wanted_m = wanted_m.filter(|_| self.state.airborne.is_none());
             let strafe = strafe.lengthened(self.flat_way(timing, generated, own_facing), wanted_m);
             // A step that ends a walk brings the feet together.
             let strafe = if timing.rests {
@@ -36,7 +38,18 @@ impl Planter {
                 leg_length,
                 own_facing,
             };
-            turner.turn_step(generated, out, timing, [&before, &strafe]);
+            let timing = self.begun(timing);
+            turner.turn_step(generated, out, &timing, [&before, &strafe]);
+        }
+    }
+
+    /// Returns the timing of a step that begins with its trailing foot in the air or on the ground.
+    fn begun(&self, timing: &StepTiming) -> StepTiming {
+        let airborne = self.state.airborne.is_some();
+        StepTiming {
+            terminal: if airborne { 0 } else { timing.terminal },
+            airborne,
+            ..*timing
         }
     }
 
@@ -63,16 +76,8 @@ impl Planter {
         course: Course,
         out: &mut [PlantedFrame],
     ) -> StepTiming {
+        let timing = &self.begun(timing);
         let airborne = self.state.airborne.take();
-        let timing = &StepTiming {
-            terminal: if airborne.is_some() {
-                0
-            } else {
-                timing.terminal
-            },
-            airborne: airborne.is_some(),
-            ..*timing
-        };
         let course = Course {
             keeps_lengths: course.keeps_lengths && timing.take_off.is_none(),
             ..course

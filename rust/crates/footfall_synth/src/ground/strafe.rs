@@ -5,6 +5,7 @@
 //! there. The roll is removed for sideways steps and reversed for backward steps, in which
 //! people land on their toes and leave from their heels. Pelvis and feet turn part of the way, as people's do, and the back turns back.
 
+mod lift;
 mod turner;
 
 use super::generated::GeneratedFrame;
@@ -69,13 +70,16 @@ impl Strafe {
 
     /// Spreads the feet so that they pass each other. `generated` is the forward step.
     pub(crate) fn spread(mut self, generated: &[GeneratedFrame], leg_length: f32) -> Self {
-        let (mut apart, mut step) = (0.0, 0.0_f32);
-        for generated in generated {
+        let apart = |generated: &GeneratedFrame| {
             let [left, right] = &generated.legs;
-            apart += left.ankle.x - right.ankle.x;
-            step = step.max((left.ankle.z - right.ankle.z).abs());
-        }
-        let stance = 0.5 * apart / generated.len() as f32;
+            left.ankle - right.ankle
+        };
+        let stance = generated.iter().map(|frame| apart(frame).x).sum::<f32>();
+        let stance = 0.5 * stance / generated.len() as f32;
+        // Its first frames may belong to longer steps.
+        let step = generated
+            .last()
+            .map_or(0.0, |landing| apart(landing).z.abs());
         // Each leg goes half a step out and half a step in.
         let side_step = 0.5 * step * self.reach[0].abs();
         if side_step > 0.0 {
@@ -101,6 +105,11 @@ impl Strafe {
     /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, over bent knees in steps to the side and backwards.
     pub(crate) fn uprightness(&self) -> f32 {
         self.forwardness.max(0.0).powi(2)
+    }
+
+    /// Share of the legs' length that is kept in short strides, from 0 to 1: people walk backwards over bent knees.
+    pub(crate) fn tallness(&self) -> f32 {
+        1.0 - self.forwardness.min(0.0).powi(2)
     }
 
     /// Returns all values.

@@ -45,6 +45,9 @@ const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 const SWING_EXTENSION: f32 = 0.9985;
 const FLYING_EXTENSIONS: [f32; 2] = [0.965, 0.99];
 
+/// Decrease of those shares, and of the share of a landing leg, as a foot leaves the ground aside or behind: its leg would straighten and bend again within frames.
+const LEAVING_ASIDE: [f32; 2] = [0.03, 0.0135];
+
 /// Difference between planted and generated foot, from the last frame of one stance to the first of the next.
 pub(super) struct Swing {
     first: usize,
@@ -231,7 +234,7 @@ impl Planter {
         } else {
             [self.landing_extension(), SWING_EXTENSION]
         };
-        let extensions = extensions.map(|share| f32x8::splat(share * self.leg_lengths[side]));
+        let leaving = LEAVING_ASIDE.map(|share| share * (1.0 - self.state.strafe.uprightness()));
         let end = within.end;
         for index in within.step_by(LANES) {
             let at = |lane: usize| (index + lane).min(end - 1);
@@ -247,6 +250,10 @@ impl Planter {
             let hip = hips + level * Vec3x8::gather(|lane| leg(lane).hip);
             let mut target = swing.guide(index, &free, &self.feet[side]);
             let ankle = target.ankle - hip;
+            let left = f32x8::ONE - smooth_step(swing.passed(index) * swing.frames.recip());
+            let extensions = [0, 1].map(|end| {
+                (f32x8::splat(extensions[end]) - left * leaving[end]) * self.leg_lengths[side]
+            });
             let yielded = ankle * yielding(ankle.length(), extensions);
             target.ankle = hip + ankle + (yielded - ankle) * swing.freed(index);
             let frames = &mut generated[index..end.min(index + LANES)];

@@ -1,23 +1,30 @@
 //! Turn of the legs and the trunk in one step.
 
 use super::Strafe;
+use super::lift::{Lift, sole_below};
 use crate::ground::frame::PlantedFrame;
 use crate::ground::generated::{GeneratedFrame, GeneratedLeg};
+use crate::ground::hip_height::MEETING_FROM;
 use crate::plan::StepTiming;
-use core::f32::consts::PI;
-use footfall_core::ease::smooth_step;
+use footfall_core::ease::{smooth_step, soft_min};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Side};
 use footfall_ik::RockerFoot;
 use glam::{Vec2, Vec3};
 
-/// Greatest stretch of the standing leg in steps to the side, as a share of its length.
-const STANDING_EXTENSION: f32 = 0.97;
+/// Stretch of the standing leg in steps to the side, and greatest stretch of the landing leg, as shares of its length.
+const STANDING_EXTENSION: [f32; 2] = [0.965, 0.978];
+const LANDING_EXTENSION: [f32; 2] = [0.95, 0.97];
 
-/// Greatest stretch of a leg that lands to the side, as a share of its length; and the distance by which its hip is nearer to the foot than twice the widening, as a share
-/// of the length.
-const LANDING_EXTENSION: f32 = 0.97;
+/// Greatest rise of the hips from their lowest place, between two steps to the side, metres, and the distance over which it sets in.
+const MOST_BOB_M: f32 = 0.05;
+const BOB_SOFTNESS_M: f32 = 0.01;
+
+/// Distance by which a hip is nearer to its foot than twice the widening, as a share of the leg.
 const HIP_SHARE: f32 = 0.06;
+
+/// Distance by which the hips are ahead of the middle between the feet in steps to the side, metres: a foot still bears when the next has landed.
+const LEAD_M: f32 = 0.02;
 
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.5;
@@ -27,12 +34,12 @@ const LEAST_HEIGHT: f32 = 0.5;
 const BACKWARD_PITCH: f32 = 0.3;
 const BACKWARD_GAIN: f32 = 1.8;
 
-/// Share of the shortness of a swinging leg that is taken back in the middle of a swing to the side or backwards. Its foot stays flat, so its sole is higher than under the hanging toes of a
-/// walk forwards: 8 cm instead of the 4 to 5 cm of people who walk backwards.
-const LOWERED: f32 = 0.3;
+/// Parts of the swing after which a foot, and its height, are independent of the stance.
+const FREED_BY: f32 = 0.5;
+const LIFTED_BY: f32 = 0.35;
 
-/// Part of the swing after which a foot is independent of its stance.
-const FREED_BY: f32 = 0.35;
+/// Part of the rest of a swing over which a foot in the air takes its new direction.
+const REDIRECTED_BY: f32 = 0.85;
 
 /// Joints that turn the trunk back to the facing direction.
 const BACK: [Joint; 3] = [Joint::Spine, Joint::Chest, Joint::UpperChest];
@@ -51,12 +58,14 @@ pub(crate) struct Turner<'a> {
 struct Swing {
     /// Progress of the foot away from its stance, from 0 to 1.
     freed: f32,
-    /// From 0 at the ends of the swing to 1 in its middle.
-    middle: f32,
+    /// The same of its height.
+    lifted: f32,
     /// Pitch at the mirrored time of the swing: backward steps swing as forward steps in reverse.
     mirrored: f32,
     /// Pitch at the landing.
     landing: f32,
+    /// Height of the sole's lowest point, from the hips as generated, metres.
+    sole: f32,
 }
 
 impl Turner<'_> {
@@ -68,26 +77,47 @@ impl Turner<'_> {
         timing: &StepTiming,
         [before, now]: [&Strafe; 2],
     ) {
-        let trailing = timing.leading.other();
+        let (leading, trailing) = (timing.leading, timing.leading.other());
         let last = timing.frames;
         let swing_frames = (last - timing.terminal) as f32;
-        let freed_by = FREED_BY * swing_frames;
         let landing = generated[last].legs[trailing.index()].free_pitch;
+        let lift = Lift::of(&self.feet[trailing.index()], generated, timing, |leg| {
+            self.flat_ankle(leading, leg).y
+        });
+        let legs = &generated[last].legs;
+        let meeting = self.rise(now, trailing, &legs[trailing.index()], LANDING_EXTENSION)
+            - self.rise(now, leading, &legs[leading.index()], STANDING_EXTENSION);
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
-            let strafe = before.between(now, index as f32 / last as f32);
+            let part = index as f32 / last as f32;
+            let strafe = before.between(now, part);
             let mirrored = (timing.terminal + last).saturating_sub(index).min(last);
             let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
-            let swing = (index > timing.terminal).then(|| Swing {
-                freed: smooth_step((index - timing.terminal) as f32 / freed_by),
-                middle: (PI * (index - timing.terminal) as f32 / swing_frames)
-                    .sin()
-                    .powi(2),
-                mirrored,
-                landing,
-            });
             let legs = &mut generated[index].legs;
-            let rise =
-                self.turn_standing(&strafe, timing.leading, &mut legs[timing.leading.index()]);
+            let standing = &mut legs[leading.index()];
+            let ground = self.flat_ankle(leading, standing).y;
+            let rise = self.rise(&strafe, leading, standing, STANDING_EXTENSION);
+            self.turn_standing(&strafe, leading, standing, rise);
+            let swing = (timing.airborne || index > timing.terminal).then(|| {
+                let s = (index - timing.terminal) as f32 / swing_frames;
+                Swing {
+                    freed: smooth_step(s / FREED_BY),
+                    lifted: if timing.airborne {
+                        1.0
+                    } else {
+                        smooth_step(s / LIFTED_BY)
+                    },
+                    mirrored,
+                    landing,
+                    sole: ground + lift.sole(s),
+                }
+            });
+            let meeting_part = (part - MEETING_FROM) / (1.0 - MEETING_FROM);
+            let rise = rise + smooth_step(meeting_part) * meeting;
+            let strafe = if timing.airborne {
+                before.between(now, (part / REDIRECTED_BY).min(1.0))
+            } else {
+                strafe
+            };
             self.turn_trailing(&strafe, trailing, &mut legs[trailing.index()], rise, swing);
             let back = from_heading(-strafe.turn / BACK.len() as f32);
             for joint in BACK {
@@ -97,30 +127,49 @@ impl Turner<'_> {
         }
     }
 
-    /// Turns the standing leg. In sideways steps its foot keeps its distance from the hip, within the reach of the leg.
-    /// Returns the rise of the hips.
-    fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut GeneratedLeg) -> f32 {
+    /// Turns the standing leg, below hips risen by `rise`.
+    fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut GeneratedLeg, rise: f32) {
         let foot = &self.feet[side.index()];
-        let flat = leg.ankle - foot.roll(leg.pitch);
+        let flat = self.flat_ankle(side, leg);
+        let pitch = standing_pitch(strafe, leg.pitch);
+        let turned = self.turn_place(strafe, side, flat) - rise * Vec3::Y;
+        leg.put(turned + foot.roll(pitch), pitch, pitch);
+    }
+
+    /// Returns the place of the ankle over the foot, were it flat.
+    fn flat_ankle(&self, side: Side, leg: &GeneratedLeg) -> Vec3 {
+        leg.ankle - self.feet[side.index()].roll(leg.pitch)
+    }
+
+    /// Returns the rise of the hips over a bearing leg: in sideways steps its flat foot keeps its distance from the hip, within the reach of the leg.
+    fn rise(
+        &self,
+        strafe: &Strafe,
+        side: Side,
+        leg: &GeneratedLeg,
+        [least, most]: [f32; 2],
+    ) -> f32 {
+        let flat = self.flat_ankle(side, leg);
         let length = flat
             .distance(leg.hip)
-            .min(STANDING_EXTENSION * self.leg_length);
-        let pitch = standing_pitch(strafe, leg.pitch);
-        let mut turned = self.turn_place(strafe, side, flat);
+            .clamp(least * self.leg_length, most * self.leg_length);
+        let turned = self.turn_place(strafe, side, flat);
         let level = Vec2::new(turned.x - leg.hip.x, turned.z - leg.hip.z).length();
         let down = length * length - level * level;
         let down = down.max(LEAST_HEIGHT * length * length).sqrt();
-        let kept = leg.hip.y - down.min(self.landing_height(strafe));
-        turned.y += strafe.reach[0].abs().min(1.0) * (kept - turned.y);
-        leg.put(turned + foot.roll(pitch), pitch, pitch);
-        flat.y - turned.y
+        let down = soft_min(
+            down,
+            self.lowest_height(strafe) + MOST_BOB_M,
+            BOB_SOFTNESS_M,
+        );
+        strafe.reach[0].abs().min(1.0) * (turned.y - (leg.hip.y - down))
     }
 
-    /// Returns the height of a hip above the ankle at which the leg reaches its landing place to the side.
-    fn landing_height(&self, strafe: &Strafe) -> f32 {
+    /// Returns the height of a hip above the ankle at which a leg reaches its place farthest to the side.
+    fn lowest_height(&self, strafe: &Strafe) -> f32 {
         let leg = self.leg_length;
         let aside = (2.0 * strafe.widening - HIP_SHARE * leg).max(0.0);
-        let height = (LANDING_EXTENSION * leg).powi(2) - aside * aside;
+        let height = (LANDING_EXTENSION[1] * leg).powi(2) - aside * aside;
         height.max(LEAST_HEIGHT * leg * leg).sqrt()
     }
 
@@ -142,26 +191,19 @@ impl Turner<'_> {
             let swinging = turned_pitch(strafe, leg.free_pitch, swing.mirrored);
             // Toes that come down as the foot lands would make a flat foot fall.
             let tilted = leg.free_pitch.max(swing.landing.min(0.0));
-            let free = place(foot.tilt(tilted)) + foot.tilt(swinging);
+            let mut free = place(foot.tilt(tilted)) + foot.tilt(swinging);
+            let lifted = swing.sole - sole_below(foot, swinging);
+            free.y += (1.0 - strafe.uprightness()) * (lifted - free.y);
+            let up = ankle.y + swing.lifted * (free.y - ankle.y);
             ankle = ankle.lerp(free, swing.freed);
-            let lowered = LOWERED * swing.middle * (1.0 - strafe.uprightness());
-            ankle = self.lowered(ankle, leg.hip, lowered);
+            ankle.y += (1.0 - strafe.uprightness()) * (up - ankle.y);
             pitch += swing.freed * (swinging - pitch);
         }
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
     }
 
-    /// Lowers an ankle so that its leg gains this share of what it lacks of a straight one.
-    fn lowered(&self, ankle: Vec3, hip: Vec3, share: f32) -> Vec3 {
-        let reach = ankle - hip;
-        let length = reach.length();
-        let longer = length + share * (self.leg_length - length).max(0.0);
-        let down = longer * longer - reach.x * reach.x - reach.z * reach.z;
-        hip + Vec3::new(reach.x, -down.max(0.0).sqrt(), reach.z)
-    }
-
-    /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is as far ahead of the
-    /// hips as behind them in any walk.
+    /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is about as far
+    /// ahead of the hips as behind them in any walk.
     fn turn_place(&self, strafe: &Strafe, side: Side, ankle: Vec3) -> Vec3 {
         let middle = self.feet[side.index()].sole_middle();
         let place = from_heading(self.own_facing) * ankle + middle;
@@ -170,7 +212,7 @@ impl Turner<'_> {
             Side::Right => -strafe.widening,
         };
         let turned = Vec3::new(
-            place.x + out + strafe.reach[0] * place.z,
+            place.x + out + strafe.reach[0] * (place.z - LEAD_M),
             place.y,
             strafe.reach[1] * place.z,
         );

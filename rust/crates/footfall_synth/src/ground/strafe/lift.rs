@@ -1,0 +1,84 @@
+//! Height of a foot that swings to the side or backwards.
+//!
+//! The toes of a walk forwards hang in the swing. A foot that stays flat on the path of such an ankle would rise by 8 cm at once, so its sole follows a curve of its own, as high as the toes
+//! in the walk forwards.
+
+use crate::ground::generated::{GeneratedFrame, GeneratedLeg};
+use crate::plan::StepTiming;
+use core::f32::consts::PI;
+use footfall_core::ease::{smooth_step, soft_min};
+use footfall_ik::RockerFoot;
+use glam::{Quat, Vec3};
+
+/// Least and greatest height of the sole, metres: people who step aside or back lift their feet by 4 to 5 cm.
+const LIFT_M: [f32; 2] = [0.03, 0.05];
+
+/// Exponent of the part of the swing: with less than 1 the foot is highest before the middle, as the knee bends while the leg trails.
+const EARLY: f32 = 0.7;
+
+/// Part of the swing at which it is highest; a foot in the air comes down from there after a replanning.
+const HIGHEST_AT: f32 = 0.37;
+
+/// Distance over which the lowest point of a sole changes from heel to toes, metres.
+const SOLE_SOFTNESS_M: f32 = 0.02;
+
+/// Curve of a swinging sole.
+pub(super) struct Lift {
+    /// Height of the sole of a flat foot from its ankle, metres.
+    flat_m: f32,
+    /// Greatest height above the ground, metres.
+    highest_m: f32,
+    /// Height of the ground under the landing foot above that under the standing one, as the legs of the step have them, metres.
+    settling_m: f32,
+    /// Part of the swing that is over when the step begins.
+    begun: f32,
+}
+
+impl Lift {
+    /// Returns the curve of the trailing foot in a step as generated. `ground` returns the height of the standing ankle, were its foot flat, from its leg.
+    pub(super) fn of(
+        foot: &RockerFoot,
+        generated: &[GeneratedFrame],
+        timing: &StepTiming,
+        ground: impl Fn(&GeneratedLeg) -> f32,
+    ) -> Self {
+        let flat_m = sole_below(foot, 0.0);
+        let legs = |index: usize| {
+            let legs = &generated[index].legs;
+            let [standing, swinging] =
+                [timing.leading, timing.leading.other()].map(|side| &legs[side.index()]);
+            (ground(standing), swinging)
+        };
+        let highest_m = (timing.terminal + 1..timing.frames)
+            .map(|index| {
+                let (ground, leg) = legs(index);
+                leg.ankle.y + sole_below(foot, leg.free_pitch) - flat_m - ground
+            })
+            .fold(0.0, f32::max)
+            .clamp(LIFT_M[0], LIFT_M[1]);
+        let (ground, landing) = legs(timing.frames);
+        Self {
+            flat_m,
+            highest_m,
+            settling_m: landing.ankle.y - foot.roll(landing.pitch).y - ground,
+            begun: if timing.airborne { HIGHEST_AT } else { 0.0 },
+        }
+    }
+
+    /// Returns the height of the sole at part `s` of the swing, from the standing ankle, metres.
+    pub(super) fn sole(&self, s: f32) -> f32 {
+        let passed = self.begun + (1.0 - self.begun) * s;
+        let up = (PI * passed.powf(EARLY)).sin().powi(2);
+        self.flat_m + up * self.highest_m + smooth_step(s) * self.settling_m
+    }
+}
+
+/// Height of the lowest point of a sole at this pitch, seen from the ankle, metres.
+pub(super) fn sole_below(foot: &RockerFoot, pitch: f32) -> f32 {
+    let tilt = Quat::from_rotation_x(pitch);
+    let [heel, _, tip] = foot.sole_points().map(|point| {
+        let point = point - foot.ankle_height() * Vec3::Y;
+        (tilt * point).y
+    });
+    soft_min(heel, tip, SOLE_SOFTNESS_M)
+}
