@@ -11,10 +11,11 @@ mod turner;
 use super::generated::GeneratedFrame;
 use crate::gait::{overstep, pelvis_turn, seen_from_pelvis};
 use footfall_core::ease::smooth_step;
-use footfall_core::{Joint, Skeleton};
+use footfall_core::rotation::exp_map;
+use footfall_core::{JOINT_COUNT, Joint, Side, Skeleton};
 use footfall_model::FEATURE_COUNT;
 use footfall_model::layout::feature_offset;
-use glam::Vec2;
+use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
 
@@ -25,7 +26,7 @@ const MOST_LENGTHENED: f32 = 1.8;
 const ASIDE: f32 = 0.1;
 
 /// Feet that pass each other sideways keep this far from the middle, as a share of the leg, so that legs do not cross.
-const PASSING_SHARE: f32 = 0.085;
+const PASSING_SHARE: f32 = 0.095;
 
 /// Swing of arms and trunk in steps to the side, as a share of a walk forwards.
 const SIDE_SWAY: f32 = 0.25;
@@ -152,6 +153,21 @@ pub(crate) fn sway(
         for index in swings {
             features[index] = middle[index] + share * (features[index] - middle[index]);
         }
+    }
+}
+
+/// Rotation of the pelvis in these features.
+pub(crate) fn pelvis_of(features: &[f32; FEATURE_COUNT]) -> Quat {
+    let at = feature_offset(Joint::Hips);
+    exp_map(Vec3::from_slice(&features[at..at + 3]))
+}
+
+/// Leaves the legs where they were under a pelvis of rotation `before`: they swing as in a walk forwards whatever the pelvis does.
+pub(crate) fn keep_legs(rotations: &mut [Quat; JOINT_COUNT], before: Quat) {
+    let back = rotations[Joint::Hips.index()].inverse() * before;
+    for side in Side::BOTH {
+        let thigh = &mut rotations[side.upper_leg().index()];
+        *thigh = (back * *thigh).normalize();
     }
 }
 

@@ -261,7 +261,8 @@ fn pass_flat(generated: &mut [GeneratedFrame], side: Side) {
     let last = generated.len() - 1;
     for index in 1..=last {
         let [before, now] = [index - 1, index].map(|at| generated[at].legs[side].pitch);
-        if before * now < 0.0 {
+        // A heel that need not rise may, if its leg lacks reach.
+        if before * now < 0.0 || before == 0.0 && now < FLAT {
             let nearer = if before.abs() < now.abs() {
                 index - 1
             } else {
