@@ -3,15 +3,17 @@
 //! The toes of a walk forwards hang in the swing. A foot that stays flat on the path of such an ankle would rise by 8 cm at once, so its sole follows a curve of its own, as high as the toes
 //! in the walk forwards.
 
-use crate::ground::generated::{GeneratedFrame, GeneratedLeg};
+use super::Turner;
+use crate::ground::generated::GeneratedFrame;
 use crate::plan::StepTiming;
 use core::f32::consts::PI;
+use footfall_core::Side;
 use footfall_core::ease::{smooth_step, soft_min};
 use footfall_ik::RockerFoot;
 use glam::{Quat, Vec3};
 
-/// Least and greatest height of the sole, metres: people who step aside or back lift their feet by 4 to 5 cm.
-const LIFT_M: [f32; 2] = [0.03, 0.05];
+/// Least and greatest height of the sole, as shares of the leg: people who step aside or back lift their feet by 4 to 5 cm.
+const LIFT_SHARES: [f32; 2] = [0.036, 0.06];
 
 /// Exponent of the part of the swing: with less than 1 the foot is highest before the middle, as the knee bends while the leg trails.
 const EARLY: f32 = 0.7;
@@ -35,32 +37,29 @@ pub(super) struct Lift {
 }
 
 impl Lift {
-    /// Returns the curve of the trailing foot in a step as generated. `ground` returns the height of the standing ankle, were its foot flat, from its leg.
+    /// Returns the curve of the trailing foot in a step as generated.
     pub(super) fn of(
-        foot: &RockerFoot,
+        turner: &Turner<'_>,
         generated: &[GeneratedFrame],
         timing: &StepTiming,
-        ground: impl Fn(&GeneratedLeg) -> f32,
     ) -> Self {
+        let (leading, trailing) = (timing.leading, timing.leading.other());
+        let foot = &turner.feet[trailing.index()];
         let flat_m = sole_below(foot, 0.0);
-        let legs = |index: usize| {
-            let legs = &generated[index].legs;
-            let [standing, swinging] =
-                [timing.leading, timing.leading.other()].map(|side| &legs[side.index()]);
-            (ground(standing), swinging)
+        let flat = |index: usize, side: Side| {
+            let leg = &generated[index].legs[side.index()];
+            turner.flat_ankle(side, leg).y
         };
-        let highest_m = (timing.terminal + 1..timing.frames)
-            .map(|index| {
-                let (ground, leg) = legs(index);
-                leg.ankle.y + sole_below(foot, leg.free_pitch) - flat_m - ground
-            })
-            .fold(0.0, f32::max)
-            .clamp(LIFT_M[0], LIFT_M[1]);
-        let (ground, landing) = legs(timing.frames);
+        let highest = (timing.terminal + 1..timing.frames).map(|index| {
+            let leg = &generated[index].legs[trailing.index()];
+            let sole = leg.ankle.y + sole_below(foot, leg.free_pitch);
+            sole - flat_m - flat(index, leading)
+        });
+        let [least, most] = LIFT_SHARES.map(|share| share * turner.leg_length);
         Self {
             flat_m,
-            highest_m,
-            settling_m: landing.ankle.y - foot.roll(landing.pitch).y - ground,
+            highest_m: highest.fold(0.0, f32::max).clamp(least, most),
+            settling_m: flat(timing.frames, trailing) - flat(timing.frames, leading),
             begun: if timing.airborne { HIGHEST_AT } else { 0.0 },
         }
     }

@@ -16,15 +16,15 @@ use glam::{Vec2, Vec3};
 const STANDING_EXTENSION: [f32; 2] = [0.965, 0.978];
 const LANDING_EXTENSION: [f32; 2] = [0.95, 0.97];
 
-/// Greatest rise of the hips from their lowest place, between two steps to the side, metres, and the distance over which it sets in.
-const MOST_BOB_M: f32 = 0.05;
+/// Greatest rise of the hips from their lowest place, between two steps to the side, as a share of the leg, and the distance over which it sets in, metres.
+const BOB_SHARE: f32 = 0.06;
 const BOB_SOFTNESS_M: f32 = 0.01;
 
 /// Distance by which a hip is nearer to its foot than twice the widening, as a share of the leg.
 const HIP_SHARE: f32 = 0.06;
 
-/// Distance by which the hips are ahead of the middle between the feet in steps to the side, metres: a foot still bears when the next has landed.
-const LEAD_M: f32 = 0.02;
+/// Distance by which the hips are ahead of the middle between the feet in steps to the side, as a share of the leg: a foot still bears when the next has landed.
+const LEAD_SHARE: f32 = 0.024;
 
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.5;
@@ -81,9 +81,7 @@ impl Turner<'_> {
         let last = timing.frames;
         let swing_frames = (last - timing.terminal) as f32;
         let landing = generated[last].legs[trailing.index()].free_pitch;
-        let lift = Lift::of(&self.feet[trailing.index()], generated, timing, |leg| {
-            self.flat_ankle(leading, leg).y
-        });
+        let lift = Lift::of(self, generated, timing);
         let legs = &generated[last].legs;
         let meeting = self.rise(now, trailing, &legs[trailing.index()], LANDING_EXTENSION)
             - self.rise(now, leading, &legs[leading.index()], STANDING_EXTENSION);
@@ -113,12 +111,18 @@ impl Turner<'_> {
             });
             let meeting_part = (part - MEETING_FROM) / (1.0 - MEETING_FROM);
             let rise = rise + smooth_step(meeting_part) * meeting;
-            let strafe = if timing.airborne {
+            let redirected = if timing.airborne {
                 before.between(now, (part / REDIRECTED_BY).min(1.0))
             } else {
                 strafe
             };
-            self.turn_trailing(&strafe, trailing, &mut legs[trailing.index()], rise, swing);
+            self.turn_trailing(
+                &redirected,
+                trailing,
+                &mut legs[trailing.index()],
+                rise,
+                swing,
+            );
             let back = from_heading(-strafe.turn / BACK.len() as f32);
             for joint in BACK {
                 let rotation = &mut frame.pose.rotations[joint.index()];
@@ -137,7 +141,7 @@ impl Turner<'_> {
     }
 
     /// Returns the place of the ankle over the foot, were it flat.
-    fn flat_ankle(&self, side: Side, leg: &GeneratedLeg) -> Vec3 {
+    pub(super) fn flat_ankle(&self, side: Side, leg: &GeneratedLeg) -> Vec3 {
         leg.ankle - self.feet[side.index()].roll(leg.pitch)
     }
 
@@ -159,7 +163,7 @@ impl Turner<'_> {
         let down = down.max(LEAST_HEIGHT * length * length).sqrt();
         let down = soft_min(
             down,
-            self.lowest_height(strafe) + MOST_BOB_M,
+            self.lowest_height(strafe) + BOB_SHARE * self.leg_length,
             BOB_SOFTNESS_M,
         );
         strafe.reach[0].abs().min(1.0) * (turned.y - (leg.hip.y - down))
@@ -212,7 +216,7 @@ impl Turner<'_> {
             Side::Right => -strafe.widening,
         };
         let turned = Vec3::new(
-            place.x + out + strafe.reach[0] * (place.z - LEAD_M),
+            place.x + out + strafe.reach[0] * (place.z - LEAD_SHARE * self.leg_length),
             place.y,
             strafe.reach[1] * place.z,
         );
