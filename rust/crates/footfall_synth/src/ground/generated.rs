@@ -2,7 +2,7 @@
 
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, foot_heading, foot_pitches, settled_pitch};
+use footfall_ik::{FootTarget, foot_heading, foot_pitch, foot_pitches, settled_pitch};
 use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 
 /// Least share of a leg's squared length that is left of it from the side.
@@ -108,7 +108,10 @@ impl GeneratedLeg {
     /// Moves the ankle, and pitches the foot to `free` in the air and to `standing` on the ground.
     pub(crate) fn put(&mut self, ankle: Vec3, free: f32, standing: f32) {
         self.ankle = ankle;
-        self.foot = (self.foot * Quat::from_rotation_x(free - self.free_pitch)).normalize();
+        let turned = self.foot * Quat::from_rotation_x(free - self.free_pitch);
+        // The pitch of a foot whose toes hang straight down is less than its turn.
+        let rest = free - foot_pitch(turned);
+        self.foot = (turned * Quat::from_rotation_x(rest)).normalize();
         self.pitch = standing;
     }
 }

@@ -26,7 +26,7 @@ const SETTLE_RATE: f32 = 8.0;
 const MOST_LANDING_MPS: [f32; 2] = [1.2, 1.5];
 
 /// The same of a switching model's foot in a step to the side or backwards: at more, its knee is turned back within a frame as it lands.
-const SOFT_LANDING_MPS: f32 = 0.8;
+const SOFT_LANDING_MPS: f32 = 0.6;
 
 /// Maximum speed of descent of a walking foot as it lands, m/s.
 const MOST_DESCENT_MPS: f32 = 0.22;
