@@ -2,7 +2,7 @@
 
 use footfall_core::lanes::{LANES, Quatx8, Vec3x8, f32x8};
 use footfall_core::{Joint, Pose, Side, Skeleton};
-use footfall_ik::{FootTarget, foot_heading, foot_pitch, foot_pitches, settled_pitch};
+use footfall_ik::{FootTarget, RockerFoot, foot_heading, foot_pitch, foot_pitches, settled_pitch};
 use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 
 /// Least share of a leg's squared length that is left of it from the side.
@@ -94,6 +94,11 @@ impl GeneratedLeg {
     /// Heading of the foot relative to the walker's.
     pub(crate) fn heading(&self) -> f32 {
         foot_heading(self.foot)
+    }
+
+    /// Returns the place of the ankle over the foot, were it flat.
+    pub(super) fn flat_ankle(&self, foot: &RockerFoot) -> Vec3 {
+        self.ankle - foot.roll(self.pitch)
     }
 
     /// Turns the leg about its hip joint so that the ankle moves to the left and ahead by `shift`.

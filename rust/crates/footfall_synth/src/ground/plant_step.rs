@@ -59,7 +59,7 @@ impl Planter {
         let level = from_heading(own_facing);
         let ahead = |frame: usize| {
             let leg = &generated[frame].legs[side];
-            (level * (leg.ankle - self.feet[side].roll(leg.pitch))).z
+            (level * leg.flat_ankle(&self.feet[side])).z
         };
         ahead(0) - ahead(timing.frames)
     }

@@ -8,7 +8,7 @@ use super::generated::{GeneratedFrame, Stride};
 use super::placing::Placing;
 use super::planter::Planter;
 use super::planter_state::PlanterState;
-use super::strafe::{Strafe, keep_legs, pelvis_of, sway};
+use super::strafe::{Strafe, decode_turned};
 use crate::detail::Detail;
 use crate::gait::Amplitude;
 use crate::plan::StepShape;
@@ -128,10 +128,12 @@ impl PlantedStep {
             }
             let s = index as f32 / timing.frames as f32;
             let (standing, mut blended) = placing.grown(features, s);
-            let pelvis = pelvis_of(&blended);
-            sway(&mut blended, &standing, before.between(&strafe, s));
-            layout::decode(&blended, rotations);
-            keep_legs(rotations, pelvis);
+            decode_turned(
+                &mut blended,
+                &standing,
+                before.between(&strafe, s),
+                rotations,
+            );
         }
         GeneratedFrame::fill(generated, frames, &self.skeleton, |index| {
             // The standing foot must not notice the beginning of another step.

@@ -14,7 +14,7 @@ use footfall_core::ease::smooth_step;
 use footfall_core::rotation::exp_map;
 use footfall_core::{JOINT_COUNT, Joint, Side, Skeleton};
 use footfall_model::FEATURE_COUNT;
-use footfall_model::layout::feature_offset;
+use footfall_model::layout::{self, feature_offset};
 use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
@@ -132,13 +132,22 @@ impl Strafe {
     }
 }
 
-/// Reduces the swing of arms and trunk: they swing against the legs, so they stop in sideways steps and reverse in
-/// backward steps. `middle` is the posture about which they swing.
-pub(crate) fn sway(
+/// Decodes the features of a frame in a turned step, in which arms and trunk swing less. `middle` is the posture about which they swing.
+pub(crate) fn decode_turned(
     features: &mut [f32; FEATURE_COUNT],
     middle: &[f32; FEATURE_COUNT],
     strafe: Strafe,
+    rotations: &mut [Quat; JOINT_COUNT],
 ) {
+    let pelvis = pelvis_of(features);
+    sway(features, middle, strafe);
+    layout::decode(features, rotations);
+    keep_legs(rotations, pelvis);
+}
+
+/// Reduces the swing of arms and trunk: they swing against the legs, so they stop in sideways steps and reverse in
+/// backward steps. `middle` is the posture about which they swing.
+fn sway(features: &mut [f32; FEATURE_COUNT], middle: &[f32; FEATURE_COUNT], strafe: Strafe) {
     let towards = if strafe.forwardness < 0.0 { 1.0 } else { -1.0 };
     let share = SIDE_SWAY + (1.0 + towards * SIDE_SWAY) * strafe.forwardness;
     for joint in Joint::ALL {
@@ -157,13 +166,13 @@ pub(crate) fn sway(
 }
 
 /// Rotation of the pelvis in these features.
-pub(crate) fn pelvis_of(features: &[f32; FEATURE_COUNT]) -> Quat {
+fn pelvis_of(features: &[f32; FEATURE_COUNT]) -> Quat {
     let at = feature_offset(Joint::Hips);
     exp_map(Vec3::from_slice(&features[at..at + 3]))
 }
 
 /// Leaves the legs where they were under a pelvis of rotation `before`: they swing as in a walk forwards whatever the pelvis does.
-pub(crate) fn keep_legs(rotations: &mut [Quat; JOINT_COUNT], before: Quat) {
+fn keep_legs(rotations: &mut [Quat; JOINT_COUNT], before: Quat) {
     let back = rotations[Joint::Hips.index()].inverse() * before;
     for side in Side::BOTH {
         let thigh = &mut rotations[side.upper_leg().index()];

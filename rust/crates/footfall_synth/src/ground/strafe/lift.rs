@@ -18,7 +18,7 @@ const LIFT_SHARES: [f32; 2] = [0.036, 0.06];
 /// Exponent of the part of the swing: with less than 1 the foot is highest before the middle, as the knee bends while the leg trails.
 const EARLY: f32 = 0.7;
 
-/// Part of the swing at which it is highest; a foot in the air comes down from there after a replanning.
+/// Part of the swing at which it is highest, a half to the power of 1 / [`EARLY`]; a foot in the air comes down from there after a replanning.
 const HIGHEST_AT: f32 = 0.37;
 
 /// Distance over which the lowest point of a sole changes from heel to toes, metres.
@@ -48,7 +48,7 @@ impl Lift {
         let flat_m = sole_below(foot, 0.0);
         let flat = |index: usize, side: Side| {
             let leg = &generated[index].legs[side.index()];
-            turner.flat_ankle(side, leg).y
+            leg.flat_ankle(&turner.feet[side.index()]).y
         };
         let highest = (timing.terminal + 1..timing.frames).map(|index| {
             let leg = &generated[index].legs[trailing.index()];

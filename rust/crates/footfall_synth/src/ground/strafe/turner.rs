@@ -82,9 +82,14 @@ impl Turner<'_> {
         let swing_frames = (last - timing.terminal) as f32;
         let landing = generated[last].legs[trailing.index()].free_pitch;
         let lift = Lift::of(self, generated, timing);
-        let legs = &generated[last].legs;
-        let meeting = self.rise(now, trailing, &legs[trailing.index()], LANDING_EXTENSION)
-            - self.rise(now, leading, &legs[leading.index()], STANDING_EXTENSION);
+        let [landed, standing] = [(trailing, LANDING_EXTENSION), (leading, STANDING_EXTENSION)]
+            .map(|(side, stretch)| {
+                let leg = &generated[last].legs[side.index()];
+                let flat = leg.flat_ankle(&self.feet[side.index()]);
+                let turned = self.turn_place(now, side, flat);
+                self.rise(now, leg.hip, [flat, turned], stretch)
+            });
+        let meeting = landed - standing;
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let part = index as f32 / last as f32;
             let strafe = before.between(now, part);
@@ -92,9 +97,12 @@ impl Turner<'_> {
             let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
             let legs = &mut generated[index].legs;
             let standing = &mut legs[leading.index()];
-            let ground = self.flat_ankle(leading, standing).y;
-            let rise = self.rise(&strafe, leading, standing, STANDING_EXTENSION);
-            self.turn_standing(&strafe, leading, standing, rise);
+            let flat = standing.flat_ankle(&self.feet[leading.index()]);
+            let turned = self.turn_place(&strafe, leading, flat);
+            let rise = self.rise(&strafe, standing.hip, [flat, turned], STANDING_EXTENSION);
+            let pitch = standing_pitch(&strafe, standing.pitch);
+            let roll = self.feet[leading.index()].roll(pitch);
+            standing.put(turned - rise * Vec3::Y + roll, pitch, pitch);
             let swing = (timing.airborne || index > timing.terminal).then(|| {
                 let s = (index - timing.terminal) as f32 / swing_frames;
                 Swing {
@@ -106,7 +114,7 @@ impl Turner<'_> {
                     },
                     mirrored,
                     landing,
-                    sole: ground + lift.sole(s),
+                    sole: flat.y + lift.sole(s),
                 }
             });
             let meeting_part = (part - MEETING_FROM) / (1.0 - MEETING_FROM);
@@ -131,34 +139,19 @@ impl Turner<'_> {
         }
     }
 
-    /// Turns the standing leg, below hips risen by `rise`.
-    fn turn_standing(&self, strafe: &Strafe, side: Side, leg: &mut GeneratedLeg, rise: f32) {
-        let foot = &self.feet[side.index()];
-        let flat = self.flat_ankle(side, leg);
-        let pitch = standing_pitch(strafe, leg.pitch);
-        let turned = self.turn_place(strafe, side, flat) - rise * Vec3::Y;
-        leg.put(turned + foot.roll(pitch), pitch, pitch);
-    }
-
-    /// Returns the place of the ankle over the foot, were it flat.
-    pub(super) fn flat_ankle(&self, side: Side, leg: &GeneratedLeg) -> Vec3 {
-        leg.ankle - self.feet[side.index()].roll(leg.pitch)
-    }
-
     /// Returns the rise of the hips over a bearing leg: in sideways steps its flat foot keeps its distance from the hip, within the reach of the leg.
+    /// The flat foot's ankle is given as generated and as turned.
     fn rise(
         &self,
         strafe: &Strafe,
-        side: Side,
-        leg: &GeneratedLeg,
+        hip: Vec3,
+        [flat, turned]: [Vec3; 2],
         [least, most]: [f32; 2],
     ) -> f32 {
-        let flat = self.flat_ankle(side, leg);
         let length = flat
-            .distance(leg.hip)
+            .distance(hip)
             .clamp(least * self.leg_length, most * self.leg_length);
-        let turned = self.turn_place(strafe, side, flat);
-        let level = Vec2::new(turned.x - leg.hip.x, turned.z - leg.hip.z).length();
+        let level = Vec2::new(turned.x - hip.x, turned.z - hip.z).length();
         let down = length * length - level * level;
         let down = down.max(LEAST_HEIGHT * length * length).sqrt();
         let down = soft_min(
@@ -166,7 +159,7 @@ impl Turner<'_> {
             self.lowest_height(strafe) + BOB_SHARE * self.leg_length,
             BOB_SOFTNESS_M,
         );
-        strafe.reach[0].abs().min(1.0) * (turned.y - (leg.hip.y - down))
+        strafe.reach[0].abs().min(1.0) * (turned.y - (hip.y - down))
     }
 
     /// Returns the height of a hip above the ankle at which a leg reaches its place farthest to the side.
@@ -197,10 +190,11 @@ impl Turner<'_> {
             let tilted = leg.free_pitch.max(swing.landing.min(0.0));
             let mut free = place(foot.tilt(tilted)) + foot.tilt(swinging);
             let lifted = swing.sole - sole_below(foot, swinging);
-            free.y += (1.0 - strafe.uprightness()) * (lifted - free.y);
+            let turned = 1.0 - strafe.uprightness();
+            free.y += turned * (lifted - free.y);
             let up = ankle.y + swing.lifted * (free.y - ankle.y);
             ankle = ankle.lerp(free, swing.freed);
-            ankle.y += (1.0 - strafe.uprightness()) * (up - ankle.y);
+            ankle.y += turned * (up - ankle.y);
             pitch += swing.freed * (swinging - pitch);
         }
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
