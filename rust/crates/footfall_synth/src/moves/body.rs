@@ -16,12 +16,16 @@ pub(super) type Beside = [f32; BESIDE_COUNT];
 const STRETCHED: f32 = 0.95;
 const MOST_STRETCHED: f32 = 0.988;
 
+/// Stretch of the legs as their feet leave the ground and land, as a fraction: nearly straight knees snap there.
+const BENT: f32 = 0.965;
+
 /// The same for a leg in the air, which straightens more.
 const STRETCHED_ALOFT: f32 = 0.975;
 const MOST_STRETCHED_ALOFT: f32 = 0.993;
 
-/// Steepest pitch of a foot on its toes, radians, and number of bisections of a pitch, to a ten-thousandth.
-const STEEPEST: f32 = 1.1;
+/// Steepest pitch of a foot on its toes, radians: steeper ones carry the ankle over the toes, where it moves far for little height. Number of
+/// bisections of a pitch, to a ten-thousandth.
+const STEEPEST: f32 = 1.0;
 const HALVINGS: usize = 13;
 
 /// Legs and feet of one body.
@@ -108,14 +112,14 @@ impl Body {
         })
     }
 
-    /// Returns the greatest height of the hips at which both legs reach feet on their toe tips, metres.
+    /// Returns the greatest height of the hips at which both legs, a little bent, reach feet on their toes, metres.
     pub(super) fn highest(&self, pose: &Pose, plants: &[Plant; 2]) -> f32 {
         let hips = pose.root_position;
         let limits = [0, 1].map(|side: usize| {
             let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side];
             let ankle = self.feet[side].stand(&plants[side], STEEPEST).ankle;
             let reach = self.leg_lengths[side];
-            reach_height(hips, hip, ankle, reach, MOST_STRETCHED).unwrap_or(hips.y)
+            reach_height(hips, hip, ankle, reach, BENT).unwrap_or(hips.y)
         });
         limits[0].min(limits[1])
     }

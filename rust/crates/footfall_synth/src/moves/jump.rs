@@ -5,16 +5,17 @@
 //! requested one.
 
 mod course;
+mod tables;
 
-use super::body::{Beside, Body};
-use crate::gait::Posture;
+use super::body::Body;
 use course::Course;
 use footfall_core::Pose;
-use footfall_core::ease::{hermite, smooth_step};
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_ik::FootTarget;
-use footfall_model::{JUMP_PHASES, JUMP_RESPONSES, JumpModel, layout};
+use footfall_model::{JUMP_PHASES, JUMP_RESPONSES};
 use glam::Vec3;
+pub(super) use tables::JumpTables;
 
 /// The phases of a model's jump.
 const DIP: usize = 0;
@@ -63,110 +64,6 @@ pub(crate) struct Flown {
     pub(crate) place: Vec3,
     /// True when the feet bear.
     pub(crate) bears: bool,
-}
-
-/// Jumps of a model, prepared.
-#[derive(Clone, Debug)]
-pub(crate) struct JumpTables {
-    /// Standing posture of the model's people.
-    standing: Pose,
-    secs: [[f32; JUMP_RESPONSES]; JUMP_PHASES],
-    rise: [f32; 3],
-    way: [f32; 3],
-    /// Knots of all phases; knots between two phases occur once.
-    knots: Vec<[Beside; JUMP_RESPONSES]>,
-    /// First knot of each phase, and the last knot.
-    begins: [usize; JUMP_PHASES + 1],
-}
-
-impl JumpTables {
-    pub(super) fn of(model: &JumpModel, standing: &Posture) -> Self {
-        let mut upright = Pose::default();
-        layout::decode(standing, &mut upright.rotations);
-        let row = |values: &Vec<f64>| -> Beside { core::array::from_fn(|at| values[at] as f32) };
-        let mut knots = Vec::new();
-        let mut begins = [0; JUMP_PHASES + 1];
-        for (index, phase) in model.phases.iter().enumerate() {
-            let shared = usize::from(index > 0);
-            knots.extend(
-                phase
-                    .knots
-                    .iter()
-                    .skip(shared)
-                    .map(|knot| knot.each_ref().map(row)),
-            );
-            begins[index + 1] = knots.len() - 1;
-        }
-        Self {
-            standing: upright,
-            secs: model
-                .phases
-                .each_ref()
-                .map(|phase| phase.secs.map(|secs| secs as f32)),
-            rise: model.rise.map(|rise| rise as f32),
-            way: model.way.map(|way| way as f32),
-            knots,
-            begins,
-        }
-    }
-
-    /// Returns the deviation of a jump of this rise and way, in leg lengths, from the mean jump: the factors of the slopes.
-    fn factors(&self, rise: f32, way: f32) -> [f32; JUMP_RESPONSES] {
-        let deviation = |value: f32, [least, mean, most]: [f32; 3]| value.clamp(least, most) - mean;
-        [1.0, deviation(rise, self.rise), deviation(way, self.way)]
-    }
-
-    /// Duration of a phase, seconds.
-    fn secs(&self, phase: usize, factors: [f32; JUMP_RESPONSES]) -> f32 {
-        let responses = self.secs[phase].iter().zip(factors);
-        responses.map(|(secs, factor)| secs * factor).sum()
-    }
-
-    /// Returns a value of a knot's posture.
-    fn number(&self, knot: usize, factors: [f32; JUMP_RESPONSES], dim: usize) -> f32 {
-        let responses = self.knots[knot].iter().zip(factors);
-        responses.map(|(row, factor)| row[dim] * factor).sum()
-    }
-
-    /// Returns the posture at part `s` of a phase, for these durations: a cubic curve through the knots.
-    fn beside(&self, phase: usize, s: f32, timing: &Timing) -> Beside {
-        let Timing {
-            factors,
-            scale,
-            secs,
-        } = *timing;
-        let count = self.begins[phase + 1] - self.begins[phase];
-        let position = s.clamp(0.0, 1.0) * count as f32;
-        let within = (position as usize).min(count - 1);
-        let knot = self.begins[phase] + within;
-        let spacing = |knot: usize| {
-            let phase = (0..JUMP_PHASES).find(|phase| knot < self.begins[phase + 1]);
-            let phase = phase.unwrap_or(JUMP_PHASES - 1);
-            secs[phase] / (self.begins[phase + 1] - self.begins[phase]) as f32
-        };
-        let last = self.knots.len() - 1;
-        let here = spacing(knot);
-        // Ratios of the rates of the neighbouring knots to the rate of these.
-        let slope = |from: usize, to: usize| {
-            let secs: f32 = (from..to).map(spacing).sum();
-            here / secs
-        };
-        let before = knot.saturating_sub(1);
-        let after = (knot + 2).min(last);
-        let [departure, arrival] = [slope(before, knot + 1), slope(knot, after)];
-        let share = position - within as f32;
-        core::array::from_fn(|dim| {
-            let at = |knot: usize| scale * self.number(knot, factors, dim);
-            let (from, to) = (at(knot), at(knot + 1));
-            hermite(
-                from,
-                departure * (to - at(before)),
-                to,
-                arrival * (at(after) - from),
-                share,
-            )
-        })
-    }
 }
 
 /// Durations of a jump's phases, and the scale of its postures.

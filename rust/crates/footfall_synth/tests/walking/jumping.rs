@@ -95,6 +95,41 @@ fn who_stands_jumps_as_high_as_asked_on_a_parabola() {
     }
 }
 
+/// Checks that the hips neither fall faster than a body can into the dip nor stop on the way, and come to rest as it stands up.
+#[test]
+fn a_jump_is_one_movement_down_and_up() {
+    let skeleton = Skeleton::standard();
+    for (seed, asked) in [(1, 0.2), (2, 0.3), (3, 0.4), (4, 0.5)] {
+        let mut generator = stander(seed);
+        let (mut frames, _) = run(&mut generator, &skeleton, &Controls::STAND, 2);
+        generator.jump(asked);
+        frames.extend(run(&mut generator, &skeleton, &Controls::STAND, 150).0);
+        let heights: Vec<f32> = frames.iter().map(hips).collect();
+        let takes_off = frames.iter().position(|frame| frame.contact == [false; 2]);
+        let takes_off = takes_off.expect("the walker leaves the ground");
+        let load = &heights[..takes_off];
+        let hardest = load.windows(3).map(|at| at[0] - 2.0 * at[1] + at[2]);
+        let hardest = hardest.fold(0.0, f32::min) / (DT * DT);
+        assert!(hardest > -1.05 * GRAVITY_MPS2, "{hardest} m/s² down");
+        let lowest = (0..load.len()).min_by(|a, b| load[*a].total_cmp(&load[*b]));
+        let lowest = lowest.expect("the load has frames");
+        let (down, up) = load.split_at(lowest);
+        // Breathing moves the hips by fractions of a millimetre.
+        assert!(down.windows(2).all(|at| at[1] < at[0] + 5e-4), "{down:?}");
+        assert!(up.windows(2).all(|at| at[1] > at[0] - 5e-4), "{up:?}");
+        let slowest = down.windows(2).map(|at| at[0] - at[1]);
+        let middle = &slowest.collect::<Vec<f32>>()[down.len() / 4..down.len() * 3 / 4];
+        let pauses = middle.iter().fold(f32::MAX, |least, fall| least.min(*fall));
+        assert!(pauses > 0.3 * DT, "{} m/s in the dip", pauses / DT);
+        let end = frames.len() - 60;
+        let settles = heights[end..]
+            .windows(3)
+            .map(|at| at[0] - 2.0 * at[1] + at[2]);
+        let settles = settles.fold(0.0_f32, |most, jolt| most.max(jolt.abs())) / (DT * DT);
+        assert!(settles < 3.0, "{settles} m/s² as the walker stands");
+    }
+}
+
 #[test]
 fn phases_follow_each_other_and_feet_bear_but_in_the_flight() {
     let mut generator = stander(5);

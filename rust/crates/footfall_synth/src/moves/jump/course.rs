@@ -1,5 +1,6 @@
 //! Course of the hips in a jump: that of the legs before and after, and a parabola in between.
 
+use super::tables::bulging;
 use super::{ABSORPTION, DIP, FLIGHT, JumpTables, Leap, PUSH, RECOVERY, Timing};
 use crate::gait::GRAVITY_MPS2;
 use crate::moves::body::{Beside, Body};
@@ -11,7 +12,7 @@ use glam::Vec3;
 const DIP_SECS: [f32; 2] = [0.15, 0.32];
 const RECOVERY_SECS: [f32; 2] = [0.25, 0.5];
 
-/// Minimum durations of push-off and absorption, seconds; recorded ones are quick already.
+/// Minimum durations of push-off and absorption, seconds.
 const LEAST_SECS: f32 = 0.08;
 
 /// Bounds of the rise of a jump, leg lengths: less is no jump, more is beyond people.
@@ -35,6 +36,9 @@ const DEEPEST_SINK: f32 = 0.3;
 /// Time before take-off at which the character begins to move, and after landing at which it arrives, seconds.
 const SHIFT_SECS: f32 = 0.12;
 
+/// Greatest downward acceleration of the hips as the dip begins, m/s²: near free fall feet would leave the ground.
+const DROP_MPS2: f32 = 0.8 * GRAVITY_MPS2;
+
 /// Part of a phase for numerical slopes.
 const SLOPE_PART: f32 = 0.02;
 
@@ -50,6 +54,10 @@ pub(crate) struct Course {
     speeds: [Vec3; 2],
     /// Errors of the model's own course at the end of the push-off and at the beginning of the absorption: metres, and metres per phase.
     missing: [[Vec3; 2]; 2],
+    /// Height of the hips between dip and push-off, which raises them evenly, metres.
+    bottom: f32,
+    /// Delay of the dip as a bulge of the hips' height, so that the body does not fall faster than it can, metres.
+    delay: f32,
     /// Extra depth of the absorption beyond that of recorded jumps, metres.
     sink: f32,
     leg: f32,
@@ -67,6 +75,10 @@ impl Course {
             let at = |s: f32| leg * hips_of(&tables.beside(phase, s, &timing));
             (at(from + SLOPE_PART) - at(from)) / SLOPE_PART
         };
+        let first = leg * hips_of(&tables.beside(DIP, SLOPE_PART, &timing)).y;
+        let least = -DROP_MPS2 * timing.secs[DIP] * timing.secs[DIP];
+        // The dip begins at rest; a bulge has a second derivative of two there.
+        let delay = (0.5 * least - first / (SLOPE_PART * SLOPE_PART)).max(0.0);
         let own_slopes = [slope(PUSH, 1.0 - SLOPE_PART), slope(ABSORPTION, 0.0)];
         let postures =
             [(PUSH, 1.0), (ABSORPTION, 0.0)].map(|(phase, s)| tables.beside(phase, s, &timing));
@@ -82,6 +94,8 @@ impl Course {
             .min(RISES[1] * leg);
         ends[1].y = ends[1].y.min(apex - up - LEAST_FALL_M);
         let push = (2.0 * GRAVITY_MPS2 * (apex - ends[0].y)).sqrt();
+        let bottom = leg * hips_of(&tables.beside(DIP, 1.0, &timing)).y;
+        timing.secs[PUSH] = (2.0 * (ends[0].y - bottom) / push).max(LEAST_SECS);
         let fall = (2.0 * GRAVITY_MPS2 * (apex - up - ends[1].y)).sqrt();
         timing.secs[FLIGHT] = (push + fall) / GRAVITY_MPS2;
         let lowest = leg * hips_of(&tables.beside(ABSORPTION, 1.0, &timing)).y;
@@ -104,6 +118,8 @@ impl Course {
             ends,
             speeds,
             missing,
+            bottom,
+            delay,
             sink,
             leg,
         }
@@ -115,8 +131,12 @@ impl Course {
         let none = Vec3::ZERO;
         let [[off, speed_off], [on, speed_on]] = self.missing;
         match phase {
-            DIP => own,
-            PUSH => own + hermite(none, none, off, speed_off, s),
+            DIP => own + self.delay * bulging(s) * Vec3::Y,
+            PUSH => {
+                let take_off = self.speeds[0].y * self.timing.secs[PUSH];
+                let height = hermite(self.bottom, 0.0, self.ends[0].y, take_off, s);
+                (own + hermite(none, none, off, speed_off, s)).with_y(height)
+            }
             FLIGHT => {
                 let t = s * self.timing.secs[FLIGHT];
                 let fall = 0.5 * GRAVITY_MPS2 * t * t * Vec3::Y;
