@@ -13,7 +13,7 @@ use glam::Vec2;
 
 /// Maximum durations of the steps that start and end a walk, seconds.
 const FIRST_SECS: f64 = 0.45;
-const LAST_SECS: f64 = 0.4;
+const LAST_SECS: f64 = 0.39;
 
 /// Turn rates from which steps get quicker, and at which a walker plants a foot and turns about it, rad/s; and the maximum duration of such a step, seconds. In between the tempo changes
 /// evenly: peers over a network know turn rates in steps.
@@ -26,9 +26,12 @@ const FIRST_MPS: f32 = 2.0;
 /// Maximum speed of the remainder of a replanned step, m/s.
 const REST_MOST_MPS: f32 = 2.0;
 
-/// Share of a walked step until which it can still end the walk, because the hips are behind the standing foot; and the hardest braking of the hips for it, m/s².
+/// Share of a walked step until which it can still end the walk, and the hardest braking of the hips for it, m/s²; and the share of its speed that a walker
+/// keeps for the step that ends the walk otherwise. It does so above the first of two speeds, and fully from the second on, m/s.
 const CLOSED_FROM: f64 = 0.45;
-const HARDEST_BRAKING_MPS2: f64 = 6.0;
+const HARDEST_BRAKING_MPS2: f32 = 13.0;
+const KEPT_SHARE: f32 = 0.6;
+const BRISK_MPS: [f32; 2] = [0.7, 1.1];
 /// Largest sideways share of the way forwards with which a step can still end the walk.
 const STRAIGHT: f32 = 0.2;
 
@@ -107,8 +110,8 @@ impl StepChooser {
     }
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
-    /// A walker that is to stop brings the feet together, provided that the hips are behind the standing foot and need not brake too hard; otherwise the next
-    /// step does so. A runner goes on running until the step ends.
+    /// A walker that is to stop brings the feet together, provided that the hips need not brake too hard to come to rest above the standing foot; otherwise it
+    /// slows down, and the next step does so. A runner goes on running until the step ends.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
@@ -119,13 +122,14 @@ impl StepChooser {
     ) -> StepRequest {
         let secs = passed.whole_frames / self.frame_rate_hz;
         let left = (1.0 - passed.share) * secs;
-        let braking = f64::from(velocity_mps.length()) / left;
         let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
+        let gently = passed.braking_mps2(left as f32) < HARDEST_BRAKING_MPS2;
         let closes = controls
             .closes
-            .unwrap_or(passed.share < CLOSED_FROM && braking < HARDEST_BRAKING_MPS2 && forwards);
+            .unwrap_or(passed.share < CLOSED_FROM && gently && forwards);
         let inside = before.amplitude == Amplitude::WALK;
-        if gait == Gait::Walk && inside && controls.amplitude.to < 1.0 && closes {
+        let stops = gait == Gait::Walk && inside && controls.amplitude.to < 1.0;
+        if stops && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
                 turn_rate: 0.0,
@@ -142,7 +146,16 @@ impl StepChooser {
                 controls.velocity_within(passed.velocity_mps, most)
             }
         };
-        let (mut pace, facing) = self.towards(gait, *velocity_mps);
+        let mut mean_mps = *velocity_mps;
+        if stops && forwards {
+            // A shorter step would have the hips brake before it lands.
+            let before_mps = before.velocity_mps;
+            let brisk =
+                smooth_step((before_mps.length() - BRISK_MPS[0]) / (BRISK_MPS[1] - BRISK_MPS[0]));
+            *velocity_mps = velocity_mps.lerp(KEPT_SHARE * before_mps, brisk);
+            mean_mps = velocity_mps.lerp(before_mps, 0.5 * brisk);
+        }
+        let (mut pace, facing) = self.towards(gait, mean_mps);
         if gait == Gait::Walk {
             pace = self.turning(self.walk.within(pace, secs), controls.turn_rate);
         }

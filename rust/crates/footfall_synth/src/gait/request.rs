@@ -102,4 +102,16 @@ pub(crate) struct Passed {
     pub(crate) borne: f32,
     /// Velocity to the left and forwards that the walker has reached by then, m/s.
     pub(crate) velocity_mps: Vec2,
+    /// Speed of the hips, m/s.
+    pub(crate) hips_mps: f32,
+    /// Way of the hips until they are above the standing foot, metres; negative when they are past it.
+    pub(crate) room_m: f32,
+}
+
+impl Passed {
+    /// Returns the hardest braking of hips that come to rest above the standing foot in this time, along a cubic, m/s².
+    pub(crate) fn braking_mps2(&self, secs: f32) -> f32 {
+        let (pace, room) = (self.hips_mps / secs, 6.0 * self.room_m / (secs * secs));
+        (4.0 * pace - room).max(room - 2.0 * pace)
+    }
 }

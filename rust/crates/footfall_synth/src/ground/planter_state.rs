@@ -1,6 +1,7 @@
 //! State of feet, hips and heading between two steps.
 
 use super::strafe::Strafe;
+use footfall_core::Side;
 use footfall_ik::{FootTarget, Plant};
 use glam::{Quat, Vec2, Vec3};
 
@@ -25,6 +26,16 @@ pub(crate) struct PlanterState {
     pub(crate) airborne: Option<Airborne>,
     /// Lean of the trunk.
     pub(crate) lean: Lean,
+}
+
+impl PlanterState {
+    /// Returns the speed of the hips over the ground, m/s, and the way until they are above a foot, metres.
+    pub(crate) fn room(&self, side: Side) -> (f32, f32) {
+        let level = Vec3::new(1.0, 0.0, 1.0);
+        let velocity = level * self.hips_velocity.unwrap_or(Vec3::ZERO);
+        let way = self.plants[side.index()].flat_ankle - self.hips;
+        (velocity.length(), way.dot(velocity.normalize_or_zero()))
+    }
 }
 
 /// A foot in the air between two steps.

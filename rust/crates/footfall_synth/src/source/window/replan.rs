@@ -45,6 +45,7 @@ impl StepWindow {
         let [facing_before, facing] = [self.origin.facing_before, before.facing];
         let timing = &shape.timing;
         let share = frame as f32 / timing.frames as f32;
+        let (hips_mps, room_m) = feet.room(timing.leading);
         let passed = Passed {
             whole_frames: timing.frames as f64 / (1.0 - self.passed()),
             share: f64::from(remainder.passed),
@@ -55,6 +56,8 @@ impl StepWindow {
                 .origin
                 .velocity_before_mps
                 .lerp(before.velocity_mps, share),
+            hips_mps,
+            room_m,
         };
         let share = smooth_step(share);
         self.origin = Origin {
