@@ -31,8 +31,7 @@ pub(crate) struct PlanterState {
 impl PlanterState {
     /// Returns the speed of the hips over the ground, m/s, and the way until they are above a foot, metres.
     pub(crate) fn room(&self, side: Side) -> (f32, f32) {
-        let level = Vec3::new(1.0, 0.0, 1.0);
-        let velocity = level * self.hips_velocity.unwrap_or(Vec3::ZERO);
+        let velocity = self.hips_velocity.unwrap_or(Vec3::ZERO).with_y(0.0);
         let way = self.plants[side.index()].flat_ankle - self.hips;
         (velocity.length(), way.dot(velocity.normalize_or_zero()))
     }

@@ -1,5 +1,6 @@
 //! Jumps and crouches: parabolas, planted feet, places that are reached.
 
+use crate::quick::hardest;
 use crate::world::{
     DT, Frame, Kind, assert_planted_within, assert_smooth, config, generator, model, run, space,
     walking,
@@ -108,9 +109,9 @@ fn a_jump_is_one_movement_down_and_up() {
         let takes_off = frames.iter().position(|frame| frame.contact == [false; 2]);
         let takes_off = takes_off.expect("the walker leaves the ground");
         let load = &heights[..takes_off];
-        let hardest = load.windows(3).map(|at| at[0] - 2.0 * at[1] + at[2]);
-        let hardest = hardest.fold(0.0, f32::min) / (DT * DT);
-        assert!(hardest > -1.05 * GRAVITY_MPS2, "{hardest} m/s² down");
+        let drops = load.windows(3).map(|at| at[0] - 2.0 * at[1] + at[2]);
+        let drop = drops.fold(0.0, f32::min) / (DT * DT);
+        assert!(drop > -1.05 * GRAVITY_MPS2, "{drop} m/s² down");
         let lowest = (0..load.len()).min_by(|a, b| load[*a].total_cmp(&load[*b]));
         let lowest = lowest.expect("the load has frames");
         let (down, up) = load.split_at(lowest);
@@ -121,11 +122,7 @@ fn a_jump_is_one_movement_down_and_up() {
         let middle = &slowest.collect::<Vec<f32>>()[down.len() / 4..down.len() * 3 / 4];
         let pauses = middle.iter().fold(f32::MAX, |least, fall| least.min(*fall));
         assert!(pauses > 0.3 * DT, "{} m/s in the dip", pauses / DT);
-        let end = frames.len() - 60;
-        let settles = heights[end..]
-            .windows(3)
-            .map(|at| at[0] - 2.0 * at[1] + at[2]);
-        let settles = settles.fold(0.0_f32, |most, jolt| most.max(jolt.abs())) / (DT * DT);
+        let settles = hardest(&frames[frames.len() - 60..], Joint::Hips);
         assert!(settles < 3.0, "{settles} m/s² as the walker stands");
     }
 }

@@ -75,10 +75,9 @@ impl Course {
             let at = |s: f32| leg * hips_of(&tables.beside(phase, s, &timing));
             (at(from + SLOPE_PART) - at(from)) / SLOPE_PART
         };
-        let first = leg * hips_of(&tables.beside(DIP, SLOPE_PART, &timing)).y;
         let least = -DROP_MPS2 * timing.secs[DIP] * timing.secs[DIP];
         // The dip begins at rest; a bulge has a second derivative of two there.
-        let delay = (0.5 * least - first / (SLOPE_PART * SLOPE_PART)).max(0.0);
+        let delay = (0.5 * least - slope(DIP, 0.0).y / SLOPE_PART).max(0.0);
         let own_slopes = [slope(PUSH, 1.0 - SLOPE_PART), slope(ABSORPTION, 0.0)];
         let postures =
             [(PUSH, 1.0), (ABSORPTION, 0.0)].map(|(phase, s)| tables.beside(phase, s, &timing));
