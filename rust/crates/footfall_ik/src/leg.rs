@@ -70,6 +70,14 @@ impl Leg {
         thigh * self.thigh_axis + shank * self.shank_axis
     }
 
+    /// Angle from upright by which the shank leans to a horizontal direction, knee first, when the hip joint is `to_hip` from the ankle, radians.
+    pub fn shank_lean(&self, to_hip: Vec3, forward: Vec3) -> f32 {
+        let distance = to_hip.length();
+        let squares = distance * distance + self.shank * self.shank - self.thigh * self.thigh;
+        let between = squares / (2.0 * self.shank * distance.max(f32::MIN_POSITIVE));
+        to_hip.dot(forward).atan2(to_hip.y) + between.clamp(-1.0, 1.0).acos()
+    }
+
     /// Rotates thigh, shank, foot and toes of a pose so that the foot meets its target. `hips_rotation` is the hips' in
     /// model space.
     ///

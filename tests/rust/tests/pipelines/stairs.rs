@@ -1,6 +1,7 @@
 //! Stairs as people take them: a tread a step, hips that ride, whole soles on treads, knees no higher than need be.
 
-use footfall_core::Joint;
+use core::f32::consts::FRAC_PI_2;
+use footfall_core::{Joint, Side};
 use footfall_tests::climb::{Climb, Outcome, Way, percentile};
 use glam::Vec3;
 
@@ -16,7 +17,7 @@ const OVERHANG_M: f32 = 0.02;
 /// Steps a second.
 const CADENCES: [f32; 2] = [1.2, 2.0];
 /// Greatest bend of a knee up and down, degrees; people have about 100.
-const BEND_DEG: [f32; 2] = [120.0, 128.0];
+const BEND_DEG: [f32; 2] = [117.0, 124.0];
 /// Angular acceleration of a knee, rad/s², and how far an ankle is from where it would be had it gone on, metres: of the smoothest of stairs and of a
 /// foot thrown over a riser.
 const KNEE: f32 = 1500.0;
@@ -37,6 +38,13 @@ const THROWN: [([f32; 2], f32, f32, u64); 7] = [
     ([-0.17, 0.29], 2.613_333_3, 1.0, 1484),
     ([-0.2, 0.28], 3.916_666_7, 1.4, 1410),
 ];
+
+/// Stairs on which Protopapadaki et al. (2007, Clinical Biomechanics 22: 203–210) measured 33 people: rise and run, metres.
+const MEASURED: [f32; 2] = [0.18, 0.285];
+/// Their greatest flexion of knee and ankle and extension of the ankle, up and down, degrees, and how far the means of climbs may be from theirs: ankles
+/// bent by 57° and were extended by 5° before feet hung, pushed off and came down with their toes first.
+const JOINTS_DEG: [[f32; 3]; 2] = [[93.9, 11.2, 31.3], [90.5, 21.1, 40.1]];
+const JOINTS_OFF_DEG: f32 = 19.0;
 
 /// Outcomes of climbs of one staircase at one speed.
 struct Row {
@@ -137,6 +145,57 @@ fn trunks_lean_into_stairs_up_and_back_from_those_down() {
         (-6.0..-1.0).contains(&(down - level)),
         "{down} after {level}"
     );
+}
+
+/// Greatest flexion of knee and ankle and extension of the ankle from one landing of a foot on the stairs to the next, means over climbs, degrees.
+fn joints([rise, run]: [f32; 2]) -> [f32; 3] {
+    let mut cycles: Vec<[f32; 3]> = vec![];
+    for index in 0..DISTANCES {
+        let distance = 2.5 + 1.7 * index as f32 / DISTANCES as f32;
+        let climb = Climb {
+            seed: 7 + index as u64,
+            ..Climb::adult(
+                Way::Stairs { rise, run },
+                distance,
+                SPEEDS[index % SPEEDS.len()],
+            )
+        };
+        let mut most: [Option<[f32; 3]>; 2] = [None; 2];
+        climb.watch(|_, walker| {
+            for side in Side::BOTH {
+                let (foot, most) = (&walker.placer.feet()[side.index()], &mut most[side.index()]);
+                if foot.landed {
+                    let on_stairs = (0.0..6.0 * run).contains(&(foot.sole.position.z - distance));
+                    cycles.extend(most.take().filter(|_| on_stairs));
+                    *most = on_stairs.then_some([0.0; 3]);
+                }
+                if let Some(most) = most {
+                    let shank = walker.world.position(side.lower_leg())
+                        - walker.world.position(side.foot());
+                    let toes = walker.world.rotation(side.foot()) * Vec3::Z;
+                    let ankle = FRAC_PI_2 - toes.angle_between(shank);
+                    for (most, now) in most.iter_mut().zip([walker.knee(side), ankle, -ankle]) {
+                        *most = most.max(now.to_degrees());
+                    }
+                }
+            }
+        });
+    }
+    core::array::from_fn(|joint| {
+        cycles.iter().map(|cycle| cycle[joint]).sum::<f32>() / cycles.len() as f32
+    })
+}
+
+#[test]
+fn joints_turn_on_stairs_as_those_of_people() {
+    let [rise, run] = MEASURED;
+    for (rise, people) in [rise, -rise].into_iter().zip(JOINTS_DEG) {
+        let joints = joints([rise, run]);
+        for (joint, people) in joints.into_iter().zip(people) {
+            let off = (joint - people).abs();
+            assert!(off < JOINTS_OFF_DEG, "{rise}: {joints:?}, people {people}");
+        }
+    }
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::placement::frame::Frame;
 use crate::placement::profile::Profile;
 use crate::placement::terrain::Terrain;
 use crate::rocker::RockerFoot;
+use footfall_core::ease::smooth_step;
 use glam::Vec3;
 
 /// Length below which steps are not aimed, metres.
@@ -26,6 +27,9 @@ const MOST_RISE: f32 = 0.6;
 const RISE_COST: f32 = 6.0;
 /// Least height of an edge, metres, up or down which a foot lands on its ball.
 const EDGE_M: f32 = 0.08;
+/// Pitch of a foot that comes down with its toes first, radians, and the falls at which it begins to and does so fully, metres.
+const TOES_FIRST: f32 = 0.4;
+const TOES_FALL_M: [f32; 2] = [0.08, 0.15];
 /// Grade above which each tread takes one step, the cost of a second step on a tread, and the greatest lengthening of a step, as a share.
 const STAIRS_GRADE: f32 = 0.2;
 const SAME_TREAD_COST: f32 = 0.2;
@@ -186,6 +190,8 @@ impl Step<'_> {
         let slope = -normal.dot(profile.along) / normal.dot(search.up).max(0.5);
         let edge = sole - ground.standing - slope * (length + shift);
         foothold.on_ball |= edge.abs() > EDGE_M;
+        let [least, most] = TOES_FALL_M;
+        foothold.pitch = TOES_FIRST * smooth_step((-edge - least) / (most - least));
         let aim = Aim {
             foothold,
             share: (length + shift) / length,

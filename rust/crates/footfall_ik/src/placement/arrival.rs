@@ -8,8 +8,13 @@ use crate::placement::foot::{Landing, Mode};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
 use crate::placement::terrain::Terrain;
+use footfall_core::ease::smooth_step;
 use glam::{Quat, Vec3};
 
+/// Pitch of the foot behind, from which people push off as the other lands on a higher tread, radians, and the rises at which they begin to and do so
+/// fully, metres.
+const PUSH_OFF: f32 = 0.42;
+const PUSH_RISE_M: [f32; 2] = [0.05, 0.15];
 /// Typical duration of a step of a walk, and the least time over which its rise is spread, seconds.
 const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
@@ -44,8 +49,8 @@ impl FootPlacer {
         let sole = floor.local(&plan.foothold.world_from_sole(terrain)?);
         let other = 1 - index;
         let standing = &self.feet[other];
-        let on_ball = plan.foothold.on_ball;
-        let reach = |leg: usize, flat: &Frame, correction: &Correction, on_ball: bool| {
+        let pitch = plan.foothold.on_ball.then_some(plan.foothold.pitch);
+        let reach = |leg: usize, flat: &Frame, correction: &Correction, pitch: Option<f32>| {
             let ankle = landing.ankles[leg];
             let hip = hips_rotation * self.hips_from_hip[leg];
             let limit = |ankle: Vec3| {
@@ -54,17 +59,16 @@ impl FootPlacer {
                     .map_or(0.0, |height| height - landing.hips.y)
             };
             // In a landing on the ball of the foot the ankle is above the flat sole.
-            let above = if on_ball {
-                Vec3::Y * self.rockers[leg].ankle_height()
-            } else {
-                ankle - flat.position
-            };
+            let above = pitch.map_or(ankle - flat.position, |pitch| {
+                let rocker = &self.rockers[leg];
+                Vec3::Y * rocker.ankle_height() + flat.rotation * rocker.roll(pitch)
+            });
             let real = flat.position + correction.shift + correction.tilt * above;
             // What the leg lacks on the animation's own floor is the animation's affair.
             limit(real) - limit(ankle).min(0.0)
         };
         let lands = Correction::between(&landing.flat, &sole);
-        let reached = reach(index, &landing.flat, &lands, on_ball);
+        let reached = reach(index, &landing.flat, &lands, pitch);
         if standing.mode != Mode::Locked || self.is_off(other, &landing) {
             let from = floor.local_point(self.stood_at?);
             let (height, rise_mps) = over_the_way(from, sole.position, plan.next_rise_m, &landing);
@@ -76,10 +80,16 @@ impl FootPlacer {
         }
         let plane = |sole: &Frame| plane_height(sole.position, sole.up(), landing.hips);
         let between = 0.5 * (plane(&sole) + plane(&standing.sole));
-        let stays = reach(other, &animated[other].flat, &standing.correction, false);
+        let rise = sole.position.y - standing.sole.position.y;
+        let stays_at = |pitch| reach(other, &animated[other].flat, &standing.correction, pitch);
+        let mut stays = stays_at(None);
+        if plan.foothold.on_ball {
+            let [least, most] = PUSH_RISE_M;
+            let push = PUSH_OFF * smooth_step((rise - least) / (most - least));
+            stays = stays.max(stays_at(Some(push)));
+        }
         let offset_m = between.min(reached).min(stays);
         let floor_height = floor.position.dot(floor.up());
-        let rise = sole.position.y - standing.sole.position.y;
         let secs = landing.secs.max(LEAST_STEP_SECS);
         // It passes a landing at the pace of the way there and of that to come, and turns where they differ.
         let coming = 0.5 * (rise + plan.next_rise_m) / STEP_SECS;

@@ -1,7 +1,7 @@
 //! Height of the pelvis: above the ground under it, within the reach of the legs.
 
 use crate::leg::{FootTarget, reach_height};
-use crate::placement::foot::{Animated, Foot, MAX_PITCH, Mode, Scene};
+use crate::placement::foot::{Animated, Ankle, Foot, MAX_PITCH, Mode, Scene};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
 use crate::placement::terrain::Terrain;
@@ -57,6 +57,7 @@ impl FootPlacer {
         let rise = self.carried(soles).dot(floor.up());
         self.pelvis.carry(rise);
         let known = self.memory.is_some();
+        let before = self.pelvis.value;
         if let Some(arrival) = arrival.filter(|_| known) {
             let target = floor_height + arrival.offset_m.clamp(-bound, bound);
             self.pelvis
@@ -72,21 +73,47 @@ impl FootPlacer {
             }
         }
         let limit = self.hard_limit(animated, hips, hips_rotation, firm);
-        self.pelvis.hold_below(floor_height + limit.max(-bound));
-        let hips = hips + Vec3::Y * (self.pelvis.value - floor_height);
+        let limit = floor_height + limit.max(-bound);
+        self.pelvis.hold_below(limit, before, dt_secs);
+        let carried = hips + Vec3::Y * (self.pelvis.value - floor_height);
+        self.fit_legs([hips, carried], hips_rotation, firm, animated, targets);
+        pose.root_position = carried;
+    }
+
+    /// Raises the heels of standing feet that legs cannot reach or whose ankles would bend too far, and shortens the way of swinging ones that are out of
+    /// reach. `hips` are those of the animation and the carried ones.
+    fn fit_legs(
+        &mut self,
+        hips: [Vec3; 2],
+        hips_rotation: Quat,
+        firm: f32,
+        animated: &[Animated; 2],
+        targets: &mut [FootTarget; 2],
+    ) {
+        // Over the foot that stands meanwhile the body comes down with its heel up.
+        let reaches_down = self.feet.each_ref().map(|foot| {
+            let foothold = foot.plan.map(|plan| plan.foothold).or(foot.hold);
+            foothold.is_some_and(|foothold| foothold.on_ball && foothold.pitch > 0.0)
+        });
         for (index, target) in targets.iter_mut().enumerate() {
-            let stretch = self.stretch(index, animated, pose.root_position, hips_rotation);
-            let hip = hips + hips_rotation * self.hips_from_hip[index];
-            let reach = stretch.clamp(firm, MAX_EXTENSION) * self.leg_lengths[index];
-            let rocker = &self.rockers[index];
-            self.feet[index].rise(rocker, &animated[index], hip, reach, target);
-            if self.feet[index].mode != Mode::Locked {
-                let easy = stretch.max(EASY_EXTENSION) * self.leg_lengths[index];
-                let most = MAX_EXTENSION * self.leg_lengths[index];
+            let stretch = self.stretch(index, animated, hips[0], hips_rotation);
+            let [animated_hip, hip] =
+                hips.map(|hips| hips + hips_rotation * self.hips_from_hip[index]);
+            let (length, rocker) = (self.leg_lengths[index], &self.rockers[index]);
+            let reach = stretch.clamp(firm, MAX_EXTENSION) * length;
+            let (foot, animated) = (&mut self.feet[index], &animated[index]);
+            let short = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
+            foot.rise(rocker, animated, short, target);
+            let ankle = Ankle::below(&self.legs[index], hip, &animated.foot, animated_hip);
+            if reaches_down[1 - index] {
+                foot.rise(rocker, animated, |foot| ankle.excess(foot), target);
+            }
+            if foot.mode != Mode::Locked {
+                let (easy, most) = (stretch.max(EASY_EXTENSION) * length, MAX_EXTENSION * length);
                 target.ankle = hip + yielded(target.ankle - hip, easy, most);
             }
+            foot.note_lean(&ankle, target);
         }
-        pose.root_position = hips;
     }
 
     /// Ends the contact of a foot behind the body that cannot stay where it stands, heel up, unless it pulls the pelvis down: once the
@@ -191,7 +218,7 @@ impl FootPlacer {
                     reach_height(hips, hip, ankle, length, extension)
                 };
                 // The heel of a foot behind the body can rise; one ahead would only go farther away.
-                let pitch = animated[index].pitch;
+                let pitch = foot.on_ball(animated[index].pitch);
                 let limit = if pitch < 0.0 {
                     limit(pitch)
                 } else {

@@ -1,5 +1,6 @@
 //! One foot: locked to its place, or swinging to the next.
 
+mod ankle;
 mod heel;
 
 use crate::leg::FootTarget;
@@ -11,6 +12,8 @@ use crate::placement::pelvis::Follower;
 use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
 use crate::rocker::{Plant, RockerFoot};
+pub(super) use ankle::Ankle;
+use footfall_core::ease::smooth_step;
 use footfall_core::rotation::{heading, wrap_angle};
 use glam::{Quat, Vec3};
 pub(super) use heel::MAX_PITCH;
@@ -21,6 +24,8 @@ const RESIDUAL_SECS: f32 = 0.06;
 pub(super) const FOLLOW_SECS: f32 = 0.08;
 /// Least time between two new plants of a foot that has drifted from its lock, seconds.
 pub(super) const REPLANT_SECS: f32 = 0.22;
+/// Duration of the lowering of a heel that landed after its toes, seconds.
+const LOWER_SECS: f32 = 0.16;
 
 /// Place where the animation will put a foot, relative to the animation's floor now.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -100,6 +105,8 @@ pub(super) struct Foot {
     pub(super) locked_with: Correction,
     pub(super) swing_secs: f32,
     pub(super) replant_secs: f32,
+    /// Pitch below which the ankle would have bent too far in the last frame, radians.
+    pub(super) hangs_from: f32,
     pub(super) guard: Follower,
     /// Way by which it is pushed out of a wall, metres.
     pub(super) pushed: Vec3,
@@ -178,6 +185,7 @@ impl Default for Foot {
             locked_with: Correction::NONE,
             swing_secs: 0.0,
             replant_secs: 0.0,
+            hangs_from: f32::MIN,
             guard: Follower::default(),
             pushed: Vec3::ZERO,
             residual: Residual::NONE,
@@ -207,10 +215,6 @@ impl Foot {
             self.let_go(if airborne { Mode::Free } else { Mode::Swinging });
         }
         let mut target = self.target(scene, rocker, animated);
-        if was == Mode::Locked && self.mode != Mode::Locked {
-            // From here on it goes as the animation does from where the lock had it in the last frame.
-            self.residual = self.at_lock;
-        }
         let mode = self.mode;
         if airborne {
             if mode != Mode::Free {
@@ -226,7 +230,11 @@ impl Foot {
             if self.mode != mode {
                 target = self.target(scene, rocker, animated);
             }
-            self.residual.fade((-scene.dt_secs / RESIDUAL_SECS).exp());
+            // Nothing of it is left at a landing.
+            let left = animated.landing.filter(|_| scene.dt_secs > 0.0);
+            let left = left.map_or(1.0, |next| next.secs / (next.secs + scene.dt_secs));
+            self.residual
+                .fade(left * (-scene.dt_secs / RESIDUAL_SECS).exp());
         } else {
             // What it would be had it gone on as it did, so that its own motion is not taken for a jump.
             let was = self.residual.apply(&target);
@@ -263,6 +271,10 @@ impl Foot {
 
     /// Changes the mode; the next landing stays.
     fn let_go(&mut self, mode: Mode) {
+        if self.mode == Mode::Locked && mode != Mode::Locked {
+            // From here on it goes as the animation does from where the lock had it in the last frame.
+            self.residual = self.at_lock;
+        }
         self.mode = mode;
         self.hold = None;
         self.lands = None;
@@ -345,10 +357,14 @@ impl Foot {
         world_target(&self.sole, &on_sole)
     }
 
-    /// Pitch on the foothold for a foot at this pitch: a heel without ground under it does not land first.
-    fn on_ball(&self, pitch: f32) -> f32 {
-        let hangs = self.hold.is_some_and(|hold| hold.on_ball);
-        if hangs { pitch.max(0.0) } else { pitch }
+    /// Pitch on the foothold for a foot at this pitch: a heel without ground under it does not land first, and one that landed after its toes
+    /// comes down.
+    pub(super) fn on_ball(&self, pitch: f32) -> f32 {
+        let Some(hold) = self.hold.filter(|hold| hold.on_ball) else {
+            return pitch;
+        };
+        let share = 1.0 - smooth_step(self.swing_secs / LOWER_SECS);
+        pitch.max(0.0).max(share * hold.pitch)
     }
 
     /// In the air a foot is where the animation has it.

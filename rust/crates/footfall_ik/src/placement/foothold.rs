@@ -24,6 +24,8 @@ const ASIDE_M: f32 = 0.02;
 pub(crate) struct Foothold {
     /// True if the foot lands on its ball: its heel extends over an edge, or it has gone up or down one.
     pub(crate) on_ball: bool,
+    /// Pitch at which the foot lands there, heel up, radians: people reach down with their toes.
+    pub(crate) pitch: f32,
     support: SupportId,
     support_from_sole: Frame,
 }
@@ -58,6 +60,7 @@ impl Lie {
     pub(crate) fn foothold(&self, terrain: &mut impl Terrain) -> Option<Foothold> {
         Some(Foothold {
             on_ball: self.heel_hangs,
+            pitch: 0.0,
             support: self.support,
             support_from_sole: terrain.support(self.support)?.local(&self.sole),
         })

@@ -60,6 +60,8 @@ const SAME_M: f32 = 0.004;
 const SAME_SECS: f32 = 0.03;
 /// Least duration of a course, seconds.
 const LEAST_SECS: f32 = 0.1;
+/// Least time of a frame in which a height has a velocity, seconds.
+const LEAST_DT_SECS: f32 = 1e-3;
 /// Share of a course's duration after which half of the distance is covered, for courses that are always replaced before their end.
 const HALF_SHARE: f32 = 0.55;
 
@@ -138,13 +140,15 @@ impl Ride {
         }
     }
 
-    /// Lowers it to `limit` at most.
-    pub(crate) fn hold_below(&mut self, limit: f32) {
+    /// Lowers it to `limit` at most, from where it rises no faster than it has come there from `before` in this time.
+    pub(crate) fn hold_below(&mut self, limit: f32, before: f32, dt_secs: f32) {
         if self.value > limit {
-            self.value = limit;
-            self.velocity = self.velocity.min(0.0);
-            self.acceleration = 0.0;
-            self.course = None;
+            let rise = (limit - before).max(0.0) / dt_secs.max(LEAST_DT_SECS);
+            *self = Self {
+                value: limit,
+                velocity: self.velocity.min(rise),
+                ..Self::default()
+            };
         }
     }
 }

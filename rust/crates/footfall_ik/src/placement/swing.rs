@@ -99,11 +99,15 @@ impl Foot {
         self.lift = lift;
         let mut foot = animated.foot;
         if let Some(((_, secs), _)) = planned
-            && self.plan.is_some_and(|plan| plan.foothold.on_ball)
+            && let Some(hold) = self.plan.map(|plan| plan.foothold)
+            && hold.on_ball
         {
-            level(rocker, animated, secs, share, &mut foot);
+            level(rocker, animated, [secs, share, hold.pitch], &mut foot);
         }
         let mut target = corrected(&self.correction, lift, animated, &foot);
+        if let Some(((_, secs), (_, way))) = planned {
+            self.hang(1.0 - way.even, secs, &mut target);
+        }
         self.guard(scene, rocker, animated, secs_left, &mut target);
         self.sole = Frame {
             position: animated.flat.position + self.correction.shift,
@@ -191,10 +195,16 @@ impl Foot {
             let from = animated.flat.position + lifted.shift;
             Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole)
         });
-        self.plan = Some(PlannedFoothold {
-            way: Some(way),
-            ..plan
-        });
+        if plan.way.is_none() {
+            let mut foothold = plan.foothold;
+            // Nobody reaches down to where the ground goes anyway.
+            foothold.pitch *= 1.0 - way.even;
+            self.plan = Some(PlannedFoothold {
+                foothold,
+                way: Some(way),
+                ..plan
+            });
+        }
         Some((Correction::between(flat, &sole), way))
     }
 
@@ -282,16 +292,22 @@ impl Foot {
 
 /// Levels a foot that comes down on its ball: the heel comes down to the toes in the first part of the swing, and the toes to the heel before the
 /// landing.
-fn level(rocker: &RockerFoot, animated: &Animated, secs: f32, share: f32, foot: &mut FootTarget) {
+fn level(
+    rocker: &RockerFoot,
+    animated: &Animated,
+    [secs, share, pitch]: [f32; 3],
+    foot: &mut FootTarget,
+) {
     let [from, until] = LEVEL_SECS;
-    let toes = smooth_step((from - secs) / (from - until)) * animated.pitch.min(0.0);
+    let landing = smooth_step((from - secs) / (from - until));
     let heel = LEVEL_HEEL * smooth_step(share / LEVEL_HEEL_SHARE) * animated.pitch.max(0.0);
-    let level = toes + heel;
-    let roll = rocker.roll(animated.pitch - level) - rocker.roll(animated.pitch);
-    let turn = Quat::from_rotation_x(-level);
+    let level = landing * animated.pitch.min(0.0) + heel;
+    // Toes that come down first lie flat.
+    let down = landing * pitch;
+    let roll = rocker.roll(animated.pitch - level + down) - rocker.roll(animated.pitch);
     foot.ankle += animated.flat.rotation * roll;
-    foot.foot = (foot.foot * turn).normalize();
-    foot.toes = (foot.toes * turn).normalize();
+    foot.foot = (foot.foot * Quat::from_rotation_x(down - level)).normalize();
+    foot.toes = (foot.toes * Quat::from_rotation_x(-level)).normalize();
 }
 
 /// A foot of the animation with a correction and a lift.

@@ -9,6 +9,7 @@ use glam::Vec3;
 
 /// Parts of the swing in which a foot rises, or descends, over uneven ground: it clears the edge before that, or after it.
 const RISE_SHARE: f32 = 0.5;
+const FALL_SHARE: f32 = 0.65;
 /// Clearance of a swinging foot from the ground, metres.
 const CLEARANCE_M: f32 = 0.03;
 /// Typical lift on flat ground in the middle of the swing, metres.
@@ -113,7 +114,7 @@ fn rising(share: f32, rises: bool) -> f32 {
     if rises {
         share / RISE_SHARE
     } else {
-        (share - 1.0 + RISE_SHARE) / RISE_SHARE
+        (share - 1.0 + FALL_SHARE) / FALL_SHARE
     }
 }
 

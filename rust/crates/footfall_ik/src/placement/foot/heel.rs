@@ -1,4 +1,4 @@
-//! The heel of a standing foot, raised so that the leg reaches.
+//! The heel of a standing foot, raised so that the leg reaches and the ankle need not bend too far.
 
 use super::{Animated, Foot, Mode, Residual, Scene};
 use crate::leg::FootTarget;
@@ -11,20 +11,19 @@ pub(in crate::placement) const MAX_PITCH: f32 = 0.95;
 const PITCH_TRIALS: usize = 12;
 
 impl Foot {
-    /// A locked foot with its heel raised until the leg reaches it from the hip; at most by [`MAX_PITCH`].
+    /// A locked foot with its heel raised until it lacks nothing; at most by [`MAX_PITCH`].
     pub(in crate::placement) fn rise(
         &mut self,
         rocker: &RockerFoot,
         animated: &Animated,
-        hip: Vec3,
-        reach: f32,
+        lacks: impl Fn(&FootTarget) -> f32,
         target: &mut FootTarget,
     ) {
-        let lacks = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
-        if self.mode != Mode::Locked || animated.pitch < 0.0 || lacks(target) <= 0.0 {
+        let pitch = self.on_ball(animated.pitch);
+        if self.mode != Mode::Locked || pitch < 0.0 || lacks(target) <= 0.0 {
             return;
         }
-        let [mut low, mut high] = [animated.pitch, MAX_PITCH.max(animated.pitch)];
+        let [mut low, mut high] = [pitch, MAX_PITCH.max(pitch)];
         for _ in 0..PITCH_TRIALS {
             let middle = 0.5 * (low + high);
             let foot = self.residual.apply(&self.standing(rocker, middle));

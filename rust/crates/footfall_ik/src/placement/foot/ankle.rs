@@ -1,0 +1,81 @@
+//! The ankle of a placed foot: it bends no further than ankles do, so that heels rise before knees go on over the toes, and swinging feet hang.
+
+use super::{Foot, Mode};
+use crate::leg::{FootTarget, Leg};
+use crate::rocker::foot_pitch;
+use footfall_core::ease::smooth_step;
+use glam::{Quat, Vec3};
+
+/// Greatest flexion of the ankle of a standing foot and of a swinging one, toes towards the shin, unless the animation bends it further, radians; and
+/// the time in which a foot that has left the ground comes from one to the other, seconds.
+const STANDING_FLEXION: f32 = 0.5;
+const HANGING_FLEXION: f32 = 0.35;
+const RELAX_SECS: f32 = 0.15;
+/// Excess over which a swinging foot begins to hang, radians.
+const SOFT_EXCESS: f32 = 0.1;
+/// Times before its landing at which a hanging foot begins to come up to its landing's pitch, and has, seconds.
+const HANG_SECS: [f32; 2] = [0.17, 0.04];
+
+/// A leg from its hip joint down, and the flexion that its ankle has in the animation.
+pub(in crate::placement) struct Ankle<'a> {
+    leg: &'a Leg,
+    hip: Vec3,
+    animated: f32,
+}
+
+impl<'a> Ankle<'a> {
+    /// The ankle of a leg below a hip joint, which is at `animated_hip` in the animation.
+    pub(in crate::placement) fn below(
+        leg: &'a Leg,
+        hip: Vec3,
+        animated: &FootTarget,
+        animated_hip: Vec3,
+    ) -> Self {
+        let in_animation = Self {
+            leg,
+            hip: animated_hip,
+            animated: 0.0,
+        };
+        let flexion = in_animation.lean(animated) - foot_pitch(animated.foot);
+        Self {
+            leg,
+            hip,
+            animated: flexion,
+        }
+    }
+
+    /// Flexion of a standing foot's ankle beyond what is allowed, radians.
+    pub(in crate::placement) fn excess(&self, foot: &FootTarget) -> f32 {
+        self.lean(foot) - foot_pitch(foot.foot) - STANDING_FLEXION.max(self.animated)
+    }
+
+    /// Angle from upright by which the shank leans over the toes, radians.
+    fn lean(&self, foot: &FootTarget) -> f32 {
+        let forward = (foot.foot * Vec3::Z).with_y(0.0).normalize_or(Vec3::Z);
+        self.leg.shank_lean(self.hip - foot.ankle, forward)
+    }
+}
+
+impl Foot {
+    /// Takes note of the pitch from which the foot has to hang in the next frame, should it swing.
+    pub(in crate::placement) fn note_lean(&mut self, ankle: &Ankle<'_>, target: &FootTarget) {
+        let relaxed = if self.mode == Mode::Locked {
+            0.0
+        } else {
+            smooth_step(self.swing_secs / RELAX_SECS)
+        };
+        let most = STANDING_FLEXION + relaxed * (HANGING_FLEXION - STANDING_FLEXION);
+        self.hangs_from = ankle.lean(target) - most.max(ankle.animated);
+    }
+
+    /// Lowers the toes of a swinging foot as its ankle gives way, this share of it and this long before its landing.
+    pub(in crate::placement) fn hang(&self, share: f32, secs: f32, foot: &mut FootTarget) {
+        let shown = self.residual.apply(foot);
+        let excess = (self.hangs_from - foot_pitch(shown.foot)).max(0.0);
+        let [from, until] = HANG_SECS;
+        let share = share * smooth_step((secs - until) / (from - until));
+        let turn = Quat::from_rotation_x(share * excess * excess / (excess + SOFT_EXCESS));
+        foot.foot = (foot.foot * turn).normalize();
+        foot.toes = (foot.toes * turn).normalize();
+    }
+}
