@@ -161,14 +161,14 @@ pub(crate) fn plant(
         });
         begin += timing.frames;
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;
-        let timing = planter
-            .get_or_insert_with(|| {
-                Planter::new(skeleton, frame_secs as f32, &generated[0], timing, facing)
-            })
-            .plant_step(&mut generated, timing, course, &mut frames);
+        let planter = planter.get_or_insert_with(|| {
+            Planter::new(skeleton, frame_secs as f32, &generated[0], timing, facing)
+        });
+        let timing = planter.plant_step(&mut generated, timing, course, &mut frames);
         if index < shown.start {
             continue;
         }
+        planter.solve_legs(&generated, &mut frames);
         if index == shown.start {
             start_heading = frames[0].ground_heading;
         }

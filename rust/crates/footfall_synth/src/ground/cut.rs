@@ -37,39 +37,37 @@ impl Cut<'_> {
     /// Returns the state for a step that begins here, with one foot in the air.
     pub(crate) fn state(&self) -> PlanterState {
         let [before, now] = [self.frame - 1, self.frame].map(|frame| &self.frames[frame]);
+        let step_secs = self.timing.frames as f32 * self.frame_secs;
+        let bend = Bend::new(self.begun.lean, &self.pull, step_secs);
+        // Where they would be, had they not sunk.
+        let leg_length = self.skeleton.mean_leg_length();
+        let hips = |frame: usize| {
+            let depth = bend.at(frame as f32 / self.timing.frames as f32).depth();
+            self.frames[frame].pose.root_position + leg_length * depth * Vec3::Y
+        };
+        let hips = |ago: usize| hips(self.frame - ago);
         let s = self.frame as f32 / self.timing.frames as f32;
         let share = smooth_step(s);
-        let velocity =
-            |of: fn(&PlantedFrame) -> Vec3| Some((of(now) - of(before)) / self.frame_secs);
-        let earlier = self.frame.checked_sub(2).map(|frame| &self.frames[frame]);
-        let hips = |frame: &PlantedFrame| frame.pose.root_position;
         // The leg of a runner accelerates the hips so much that half a frame counts.
-        let hips_velocity = match earlier {
-            Some(earlier) if self.timing.take_off.is_some() => {
-                let way = 3.0 * hips(now) - 4.0 * hips(before) + hips(earlier);
-                Some(way / (2.0 * self.frame_secs))
-            }
-            _ => velocity(hips),
+        let way = if self.timing.take_off.is_some() && self.frame > 1 {
+            1.5 * hips(0) - 2.0 * hips(1) + 0.5 * hips(2)
+        } else {
+            hips(0) - hips(1)
         };
         let swinging = self.timing.leading.other();
         PlanterState {
             plants: self.begun.plants,
-            hips: hips(now),
-            hips_velocity,
+            hips: hips(0),
+            hips_velocity: Some(way / self.frame_secs),
             heading: now.heading,
             turn_rate: self.begun.turn_rate
                 + smooth_step(s / TURN_ONSET) * (self.turn_rate - self.begun.turn_rate),
             ground_position: now.ground_position,
-            ground_velocity: velocity(|frame| frame.ground_position),
+            ground_velocity: Some((now.ground_position - before.ground_position) / self.frame_secs),
             stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
             strafe: self.begun.strafe.between(&self.ended.strafe, s),
             balance: self.begun.balance.lerp(self.ended.balance, share),
-            lean: Bend::new(
-                self.begun.lean,
-                &self.pull,
-                self.timing.frames as f32 * self.frame_secs,
-            )
-            .at(s),
+            lean: bend.at(s),
             airborne: Some(Airborne {
                 now: self.foot(now, swinging),
                 before: self.foot(before, swinging),

@@ -129,11 +129,15 @@ impl Planter {
         self.fill_swing(generated, trailing, first..timing.frames, &swing, out);
         self.depart(generated, timing, out);
         generated[timing.frames].legs[trailing.index()].target = ends[2].0;
+        self.state.plants[trailing.index()] = next_plant;
+        *timing
+    }
+
+    /// Turns the legs of a step's frames to their feet.
+    pub(crate) fn solve_legs(&self, generated: &[GeneratedFrame], out: &mut [PlantedFrame]) {
         for side in Side::BOTH {
             let target = |index: usize| &generated[index].legs[side.index()].target;
             self.legs[side.index()].solve_many(out, target);
         }
-        self.state.plants[trailing.index()] = next_plant;
-        *timing
     }
 }

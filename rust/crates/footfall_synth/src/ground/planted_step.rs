@@ -174,6 +174,7 @@ impl PlantedStep {
         );
         planter.plant_step(generated, &timing, course, frames);
         planter.lean(&placing.pull(step_secs), frames);
+        planter.solve_legs(generated, frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,
             ankles: Side::BOTH.map(|side| generated[timing.frames].legs[side.index()].target.ankle),
