@@ -90,7 +90,7 @@ impl FootPlacer {
         animated: &[Animated; 2],
         targets: &mut [FootTarget; 2],
     ) {
-        // Over the foot that stands meanwhile the body comes down with its heel up.
+        // While one foot reaches down, the heel of the other rises.
         let reaches_down = self.feet.each_ref().map(|foot| {
             let foothold = foot.plan.map(|plan| plan.foothold).or(foot.hold);
             foothold.is_some_and(|foothold| foothold.on_ball && foothold.pitch > 0.0)

@@ -39,13 +39,13 @@ impl Cut<'_> {
         let [before, now] = [self.frame - 1, self.frame].map(|frame| &self.frames[frame]);
         let step_secs = self.timing.frames as f32 * self.frame_secs;
         let bend = Bend::new(self.begun.lean, &self.pull, step_secs);
-        // Where they would be, had they not sunk.
         let leg_length = self.skeleton.mean_leg_length();
-        let hips = |frame: usize| {
+        // Where the hips would have been so many frames ago, had they not sunk.
+        let hips = |ago: usize| {
+            let frame = self.frame - ago;
             let depth = bend.at(frame as f32 / self.timing.frames as f32).depth();
             self.frames[frame].pose.root_position + leg_length * depth * Vec3::Y
         };
-        let hips = |ago: usize| hips(self.frame - ago);
         let s = self.frame as f32 / self.timing.frames as f32;
         let share = smooth_step(s);
         // The leg of a runner accelerates the hips so much that half a frame counts.
