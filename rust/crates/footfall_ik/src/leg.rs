@@ -71,7 +71,7 @@ impl Leg {
     }
 
     /// Angle from upright by which the shank leans to a horizontal direction, knee first, when the hip joint is `to_hip` from the ankle, radians.
-    pub fn shank_lean(&self, to_hip: Vec3, forward: Vec3) -> f32 {
+    pub(crate) fn shank_lean(&self, to_hip: Vec3, forward: Vec3) -> f32 {
         let distance = to_hip.length();
         let squares = distance * distance + self.shank * self.shank - self.thigh * self.thigh;
         let between = squares / (2.0 * self.shank * distance.max(f32::MIN_POSITIVE));

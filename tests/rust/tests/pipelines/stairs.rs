@@ -46,6 +46,15 @@ const MEASURED: [f32; 2] = [0.18, 0.285];
 const JOINTS_DEG: [[f32; 3]; 2] = [[93.9, 11.2, 31.3], [90.5, 21.1, 40.1]];
 const JOINTS_OFF_DEG: f32 = 19.0;
 
+/// One of the climbs of a staircase from all [`DISTANCES`].
+fn climb([rise, run]: [f32; 2], speed_mps: f32, index: usize) -> Climb {
+    let distance = 2.5 + 1.7 * index as f32 / DISTANCES as f32;
+    Climb {
+        seed: 7 + index as u64,
+        ..Climb::adult(Way::Stairs { rise, run }, distance, speed_mps)
+    }
+}
+
 /// Outcomes of climbs of one staircase at one speed.
 struct Row {
     rise: f32,
@@ -53,18 +62,11 @@ struct Row {
 }
 
 impl Row {
-    fn of([rise, run]: [f32; 2], speed_mps: f32) -> Self {
-        let climb = |index: usize| Climb {
-            seed: 7 + index as u64,
-            ..Climb::adult(
-                Way::Stairs { rise, run },
-                2.5 + 1.7 * index as f32 / DISTANCES as f32,
-                speed_mps,
-            )
-        };
+    fn of(stairs: [f32; 2], speed_mps: f32) -> Self {
+        let climbs = (0..DISTANCES).map(|index| climb(stairs, speed_mps, index));
         Self {
-            rise,
-            outcomes: (0..DISTANCES).map(|index| climb(index).walk()).collect(),
+            rise: stairs[0],
+            outcomes: climbs.map(|climb| climb.walk()).collect(),
         }
     }
 
@@ -148,24 +150,17 @@ fn trunks_lean_into_stairs_up_and_back_from_those_down() {
 }
 
 /// Greatest flexion of knee and ankle and extension of the ankle from one landing of a foot on the stairs to the next, means over climbs, degrees.
-fn joints([rise, run]: [f32; 2]) -> [f32; 3] {
+fn joints(stairs: [f32; 2]) -> [f32; 3] {
     let mut cycles: Vec<[f32; 3]> = vec![];
     for index in 0..DISTANCES {
-        let distance = 2.5 + 1.7 * index as f32 / DISTANCES as f32;
-        let climb = Climb {
-            seed: 7 + index as u64,
-            ..Climb::adult(
-                Way::Stairs { rise, run },
-                distance,
-                SPEEDS[index % SPEEDS.len()],
-            )
-        };
+        let climb = climb(stairs, SPEEDS[index % SPEEDS.len()], index);
+        let steps = 0.0..climb.way.length();
         let mut most: [Option<[f32; 3]>; 2] = [None; 2];
         climb.watch(|_, walker| {
             for side in Side::BOTH {
                 let (foot, most) = (&walker.placer.feet()[side.index()], &mut most[side.index()]);
                 if foot.landed {
-                    let on_stairs = (0.0..6.0 * run).contains(&(foot.sole.position.z - distance));
+                    let on_stairs = steps.contains(&(foot.sole.position.z - climb.distance_m));
                     cycles.extend(most.take().filter(|_| on_stairs));
                     *most = on_stairs.then_some([0.0; 3]);
                 }

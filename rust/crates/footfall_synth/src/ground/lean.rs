@@ -1,7 +1,7 @@
 //! Lean: the trunk bends into turns, ahead of a gain of speed and against a loss of it, and the hips sink.
 //!
 //! A body in balance leans so far that gravity and acceleration together point along it: the tangent of the angle is the acceleration over g, which is
-//! `v·ω` in a turn. The legs lean by the places of the feet; here the trunk adds its [`SHARE`], and the head half of that, because people keep their eyes level.
+//! `v·ω` in a turn. The trunk leans by a [`SHARE`] of it, and the head by half of that, because people keep their eyes level. Feet are placed as straight ahead, so that legs do not.
 //! Legs that push the body aside or stop it are bent and aslant: the harder they do, the lower are the hips.
 
 use super::frame::PlantedFrame;

@@ -79,3 +79,35 @@ impl Foot {
         foot.toes = (foot.toes * turn).normalize();
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_core::rotation::exp_map;
+    use footfall_core::{ModelPose, Pose, Side, Skeleton};
+
+    #[test]
+    fn an_ankle_is_as_bent_as_in_the_pose_whatever_its_leg_does() {
+        let skeleton = Skeleton::standard();
+        for (hip, knee, bent) in [(0.3, 0.6, 0.0), (0.9, 1.7, 0.8), (-0.2, 0.1, -0.4)] {
+            for side in Side::BOTH {
+                let mut pose = Pose::rest(&skeleton);
+                let turns = [
+                    (side.upper_leg(), -hip),
+                    (side.lower_leg(), knee),
+                    (side.foot(), -bent),
+                ];
+                for (joint, angle) in turns {
+                    pose.rotations[joint.index()] = exp_map(Vec3::X * angle);
+                }
+                let model = ModelPose::of(&skeleton, &pose);
+                let leg = Leg::new(&skeleton, side);
+                let (at, foot) = (model.position(side.upper_leg()), leg.foot_of(&pose));
+                let ankle = Ankle::below(&leg, at, &foot, at);
+                assert!((ankle.animated - bent).abs() < 0.02, "{}", ankle.animated);
+                let excess = (bent - STANDING_FLEXION).min(0.0);
+                assert!((ankle.excess(&foot) - excess).abs() < 0.02);
+            }
+        }
+    }
+}
