@@ -23,6 +23,8 @@ const LATE_SHARES: [f32; 2] = [0.1, 0.6];
 pub(super) const LATE_RISE_M: f32 = 0.08;
 /// Greatest distance by which a foot swings past a foothold with an edge above it, metres.
 const MOST_PAST_M: f32 = 0.008;
+/// Way ahead from its last place to a foothold from which a foot is kept before that edge, metres.
+const ONWARD_M: f32 = 0.15;
 /// Height to which a foot is lifted that is planted anew, metres.
 const REPLANT_LIFT_M: f32 = 0.04;
 /// Time before a landing on the ball from which the toes are no higher than the heel, and duration of the rotation before that, seconds.
@@ -165,13 +167,11 @@ impl Foot {
         let rise = self.plan.map_or(0.0, |plan| plan.next_rise_m);
         let past = (animated.flat.position + self.correction.shift - lands).with_y(0.0);
         let forward = animated.flat.forward().with_y(0.0).normalize_or_zero();
-        if (lands - start).dot(forward) < 0.0 {
-            // It steps backwards.
-            return;
-        }
+        // Not where it steps backwards or aside.
+        let onward = smooth_step((lands - start).dot(forward) / ONWARD_M);
         let past_m = past.dot(forward).max(0.0);
         let back_m = past_m * past_m / (past_m + MOST_PAST_M);
-        self.correction.shift -= forward * (back_m * smooth_step(rise / LATE_RISE_M));
+        self.correction.shift -= forward * (onward * back_m * smooth_step(rise / LATE_RISE_M));
     }
 
     /// Correction that carried the foot when it was lifted, over the floor as it is now.

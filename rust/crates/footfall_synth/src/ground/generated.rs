@@ -8,6 +8,9 @@ use glam::{Quat, Vec2, Vec3, Vec3Swizzles as _};
 /// Least share of a leg's squared length that is left of it from the side.
 const LEAST_HEIGHT: f32 = 0.25;
 
+/// Greatest share of a leg's squared length by which its ankle is ahead of the hip joint, or behind it: no stride spreads the legs farther.
+const MOST_SLANT: f32 = 0.45;
+
 /// Stride, as a share of a walk's, below which feet are lifted less, and the parts of their lift and pitch that are left on the spot: people who step or turn on the spot lift flat feet
 /// over knees bent by 35 to 45°, a walk's swing bends them by 65°.
 const LIFTED_STRIDE: f32 = 0.9;
@@ -167,8 +170,10 @@ impl GeneratedFrame {
                 let mut foot = shank * of_poses(side.foot());
                 let hip = hips * offset(side.upper_leg());
                 let reach = thigh * offset(side.lower_leg()) + shank * offset(side.foot());
-                let [x, z] = [reach.x, reach.z * scale];
                 let mut squared = reach.x * reach.x + reach.y * reach.y + reach.z * reach.z;
+                let x = reach.x;
+                let most = (squared * MOST_SLANT - x * x).fast_max(f32x8::ZERO).sqrt();
+                let z = (reach.z * scale).fast_min(most).fast_max(-most);
                 let mut free_pitch = foot_pitches(foot);
                 // A shorter stride lands flatter and pushes off less.
                 let pitch = settled_pitch(free_pitch * scale.fast_min(f32x8::ONE));
