@@ -184,20 +184,28 @@ fn who_stood_still_finds_the_others_again() {
     }
 }
 
+/// Networks differ in the steps that they lose, so that several count together.
 #[test]
 fn a_small_budget_is_kept_and_shared_by_who_needs_it() {
-    let mut link = Link::new(wander(), 120);
-    // A third of what all copies of all steps take.
-    link.bytes_per_second = 4000;
-    link.join();
-    link.walk(40.0);
-    let [steps, people] = link.sent;
-    assert!(steps < 41 * 4000, "{steps} bytes about steps");
-    assert!(people < 120 * 45, "{people} bytes about people");
-    let [median, most, ..] = link.shares(10.0);
-    assert!(median < SAME_PLACE_M, "{median} m in the median");
+    const NETWORKS: u8 = 6;
+    let mut most_of_all = 0.0;
+    for chance in 0..NETWORKS {
+        let mut link = Link::new(wander(), 120);
+        link.chance = 5 + u32::from(chance);
+        // A third of what all copies of all steps take.
+        link.bytes_per_second = 4000;
+        link.join();
+        link.walk(40.0);
+        let [steps, people] = link.sent;
+        assert!(steps < 41 * 4000, "{steps} bytes about steps");
+        assert!(people < 120 * 45, "{people} bytes about people");
+        let [median, most, ..] = link.shares(10.0);
+        assert!(median < SAME_PLACE_M, "{median} m in the median");
+        assert!(link.fastest_mps < FASTEST_MPS, "{} m/s", link.fastest_mps);
+        most_of_all += most;
+    }
+    let most = most_of_all / f32::from(NETWORKS);
     assert!(most < 0.5, "{most} m for 99 %");
-    assert!(link.fastest_mps < FASTEST_MPS, "{} m/s", link.fastest_mps);
 }
 
 #[test]

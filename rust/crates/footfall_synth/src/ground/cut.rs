@@ -25,13 +25,20 @@ pub(crate) struct Cut<'a> {
 }
 
 impl Cut<'_> {
-    /// Returns true when one foot stands and the other is in the air, in this frame and in the previous one.
-    pub(crate) fn is_in_swing(&self) -> bool {
+    /// Returns true when one foot stands and the other is in the air, in this frame and in the previous one. A runner's foot has to stand for `bearing_frames` more: it
+    /// leaves before its time where its leg does not reach.
+    pub(crate) fn is_in_swing(&self, bearing_frames: usize) -> bool {
         let (standing, swinging) = (self.timing.leading, self.timing.leading.other());
+        let ahead = self.timing.take_off.map_or(0, |_| bearing_frames);
+        let contact = |side: Side| move |frame: &PlantedFrame| frame.contact[side.index()];
         self.frame > 0
-            && self.frames[self.frame - 1..=self.frame]
-                .iter()
-                .all(|frame| frame.contact[standing.index()] && !frame.contact[swinging.index()])
+            && self
+                .frames
+                .get(self.frame - 1..=self.frame + ahead)
+                .is_some_and(|frames| {
+                    frames.iter().all(contact(standing))
+                        && !frames[..2].iter().any(contact(swinging))
+                })
     }
 
     /// Returns the state for a step that begins here, with one foot in the air.

@@ -1,13 +1,22 @@
 //! Placing of a step on the ground: direction, speed and postures.
 
 use super::displacement::Displacement;
-use super::lean::Pull;
+use super::lean::{Bend, Pull};
 use super::speed_change::SpeedChange;
 use crate::gait::Posture;
 use crate::plan::StepShape;
 use footfall_core::ease::smooth_step;
 use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
+
+/// Turn rates from which a walker leans less, and at which it turns about a foot rather than along a curve, rad/s.
+const PIVOT_RADPS: [f32; 2] = [2.5, 3.5];
+
+/// Greatest factor on a stride for the lean into a turn.
+const WIDEST: f32 = 1.25;
+
+/// Speed below which a turn widens a stride no further, m/s.
+const SLOW_MPS: f32 = 0.5;
 
 /// Placing of a step on the ground.
 #[derive(Clone, Copy, Debug)]
@@ -37,10 +46,19 @@ impl Placing<'_> {
     /// Returns the accelerations to lean against in a step of this duration. Runs lean into turns, too; sidesteps do not lean.
     pub(super) fn pull(&self, secs: f32) -> Pull {
         let [before, after] = self.ends_mps();
+        let [from, to] = PIVOT_RADPS;
+        let curving = 1.0 - smooth_step((self.turn_rate.abs() - from) / (to - from));
         Pull {
             within: Vec2::new(0.0, (after.y - before.y) / secs),
-            after: Vec2::new(after.y * self.turn_rate, 0.0),
+            after: Vec2::new(curving * after.y * self.turn_rate, 0.0),
         }
+    }
+
+    /// Returns the length of the feet's way in a turn beside that of the hips, which lean into it.
+    pub(super) fn widening(&self, bend: &Bend, leg_length: f32) -> f32 {
+        let [_, after] = self.ends_mps();
+        let outwards = leg_length * bend.outwards();
+        (1.0 + outwards * self.turn_rate.abs() / after.y.abs().max(SLOW_MPS)).min(WIDEST)
     }
 
     /// Returns the change of speed from the previous step to the end of this one.

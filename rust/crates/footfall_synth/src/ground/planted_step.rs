@@ -5,9 +5,10 @@ use super::course::Course;
 use super::cut::Cut;
 use super::frame::PlantedFrame;
 use super::generated::{GeneratedFrame, Stride};
+use super::lean::Bend;
 use super::placing::Placing;
 use super::planter::Planter;
-use super::planter_state::PlanterState;
+use super::planter_state::{Lean, PlanterState};
 use super::strafe::{Strafe, decode_turned};
 use crate::detail::Detail;
 use crate::gait::Amplitude;
@@ -69,11 +70,11 @@ impl PlantedStep {
     }
 
     /// Returns the state from which the remainder continues if the step is cut at a frame; `None` if no foot is in the air there, and for steps
-    /// in less than full detail. `begun` is the state with which the step began.
+    /// in less than full detail. `begun` is the state with which the step began; a runner's foot has to stand for `bearing_frames` more.
     pub(crate) fn cut(
         &self,
         shape: &StepShape,
-        frame: usize,
+        (frame, bearing_frames): (usize, usize),
         begun: &PlanterState,
         placing: &Placing<'_>,
     ) -> Option<PlanterState> {
@@ -89,7 +90,7 @@ impl PlantedStep {
             pull: placing.pull(shape.timing.frames as f32 * self.frame_secs),
         };
         let whole = shape.detail == Detail::Full && frame < shape.timing.frames;
-        (whole && cut.is_in_swing()).then(|| cut.state())
+        (whole && cut.is_in_swing(bearing_frames)).then(|| cut.state())
     }
 
     /// Returns the travel of the hips over the ground in the step.
@@ -112,9 +113,12 @@ impl PlantedStep {
         let frame_secs = self.frame_secs * detail as f32;
         let stride = 1.0 + shape.amplitude.to * (shape.stride as f32 - 1.0);
         let before = self.planter.as_ref().map(Planter::state);
+        let lean_before = before.map_or(Lean::default(), |state| state.lean);
         let (before, stride_before) =
             before.map_or((Strafe::NONE, stride), |state| (state.strafe, state.stride));
         let step_secs = frame_secs * timing.frames as f32;
+        let bend = Bend::new(lean_before, &placing.pull(step_secs), step_secs);
+        let stride = stride * placing.widening(&bend, self.skeleton.mean_leg_length());
         let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let generated = &mut generated[..=timing.frames];
@@ -172,8 +176,9 @@ impl PlantedStep {
             facing - strafe.turn,
             frames,
         );
+        bend.lean_over(generated);
         planter.plant_step(generated, &timing, course, frames);
-        planter.lean(&placing.pull(step_secs), frames);
+        planter.bow(&bend, frames);
         planter.solve_legs(generated, frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,

@@ -15,7 +15,7 @@ const LEAST_FRAMES: usize = 6;
 pub(crate) struct Deadline {
     last_state: usize,
     /// Minimum number of frames left of a runner's stance.
-    bearing_frames: usize,
+    pub(crate) bearing_frames: usize,
 }
 
 impl Deadline {
@@ -50,10 +50,8 @@ impl Remainder {
         before: Option<Self>,
         deadline: Deadline,
     ) -> Option<Self> {
-        let timing = &plan.shape.timing;
-        let frames = timing.frames;
-        let bears = |last: usize| frame + deadline.bearing_frames <= last;
-        if frame + LEAST_FRAMES > frames || !timing.take_off.is_none_or(bears) {
+        let frames = plan.shape.timing.frames;
+        if frame + LEAST_FRAMES > frames {
             return None;
         }
         let mut begins = 0;

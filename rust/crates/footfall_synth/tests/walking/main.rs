@@ -5,6 +5,7 @@
 
 mod climbing;
 mod jumping;
+mod leaning;
 mod quick;
 mod run_response;
 mod run_up;

@@ -36,7 +36,8 @@ impl StepWindow {
         };
         let blends = [&*self.blend_before, &*self.blend];
         let placing = placing(&self.origin, &self.plans, blends, 1);
-        let Some(feet) = self.planted.cut(&shape, frame, &begun, &placing) else {
+        let cut_at = (frame, deadline.bearing_frames);
+        let Some(feet) = self.planted.cut(&shape, cut_at, &begun, &placing) else {
             return false;
         };
         // The solved trajectory was not kept.

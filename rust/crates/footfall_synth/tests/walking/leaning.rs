@@ -1,0 +1,137 @@
+//! Leaning: into turns with the whole body, and of the trunk against changes of speed.
+
+use crate::running::ROLLING_MPS;
+use crate::world::{DT, Frame, Kind, assert_planted_within, generator, run, walking};
+use footfall_core::{Joint, Side, Skeleton};
+use footfall_synth::Controls;
+use glam::{Quat, Vec3};
+
+/// Means over ten seconds of a turn to the left (1) or to the right (-1).
+struct Turn {
+    /// Inward lean of pelvis and chest, radians.
+    pelvis: f32,
+    chest: f32,
+    /// Distance of the feet outside the hips, metres.
+    outside_m: f32,
+    /// Speed of the hips, m/s.
+    speed_mps: f32,
+}
+
+fn turn(side: f32, speed_mps: f32, pull_mps2: f32) -> Turn {
+    let skeleton = Skeleton::standard();
+    let controls = Controls {
+        turn_rate_radps: side * pull_mps2 / speed_mps,
+        ..walking(speed_mps)
+    };
+    let mut walker = generator(Kind::Styled, 2);
+    let (frames, _) = run(&mut walker, &skeleton, &controls, 780);
+    assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+    let frames = &frames[180..];
+    let inwards = |of: &dyn Fn(&Frame) -> Vec3| {
+        let left = |frame: &Frame| (Quat::from_rotation_y(-frame.heading) * of(frame)).x;
+        side * frames.iter().map(left).sum::<f32>() / frames.len() as f32
+    };
+    let lean = |joint: Joint| inwards(&|frame| frame.model.rotation(joint) * Vec3::Y).asin();
+    let hips = |frame: &Frame| frame.model.position(Joint::Hips);
+    let feet = Side::BOTH
+        .map(|side| inwards(&|frame: &Frame| hips(frame) - frame.model.position(side.foot())));
+    let ways = frames.windows(2);
+    let ways = ways.map(|pair| (hips(&pair[1]) - hips(&pair[0])).with_y(0.0).length());
+    Turn {
+        pelvis: lean(Joint::Hips),
+        chest: lean(Joint::Chest),
+        outside_m: 0.5 * (feet[0] + feet[1]),
+        speed_mps: ways.sum::<f32>() / ((frames.len() - 1) as f32 * DT),
+    }
+}
+
+/// Pelvis and chest of O3DE's actor lean by 6°, 10° and 14° in turns at 1.5, 2.5 and 3.5 m/s², walking and running, and his feet are 13, 20 and 26 cm outside his hips.
+#[test]
+fn bodies_lean_into_turns_as_those_of_people() {
+    for (speed_mps, pull_mps2, lean_deg, outside_m) in [
+        (1.3, 1.5, 6.0, 0.13),
+        (1.8, 2.5, 10.0, 0.2),
+        (2.6, 1.5, 6.0, 0.13),
+        (2.6, 2.5, 10.0, 0.2),
+        (2.6, 3.5, 14.0, 0.26),
+    ] {
+        let turns = [1.0, -1.0].map(|side| turn(side, speed_mps, pull_mps2));
+        let mean = |of: fn(&Turn) -> f32| 0.5 * (of(&turns[0]) + of(&turns[1]));
+        let what = format!("{speed_mps} m/s, {pull_mps2} m/s²");
+        for lean in [mean(|turn| turn.pelvis), mean(|turn| turn.chest)] {
+            let lean = lean.to_degrees();
+            assert!((lean - lean_deg).abs() < 1.0, "{what}: {lean}°");
+        }
+        let outside = mean(|turn| turn.outside_m);
+        assert!((outside - outside_m).abs() < 0.05, "{what}: {outside} m");
+        // The feet's circle is wider than the hips'.
+        let speed = mean(|turn| turn.speed_mps);
+        assert!(
+            (speed - speed_mps).abs() < 0.06 * speed_mps,
+            "{what}: {speed} m/s"
+        );
+    }
+}
+
+/// Hips of O3DE's actor are 7 cm lower in turns at 3 to 4 m/s², walking and running.
+#[test]
+fn hips_sink_in_turns_as_those_of_people() {
+    let skeleton = Skeleton::standard();
+    let height = |speed_mps: f32, turn_rate_radps: f32| {
+        let controls = Controls {
+            turn_rate_radps,
+            ..walking(speed_mps)
+        };
+        let mut walker = generator(Kind::Styled, 2);
+        let (frames, _) = run(&mut walker, &skeleton, &controls, 600);
+        assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+        let heights = frames[180..].iter();
+        heights
+            .map(|frame| frame.model.position(Joint::Hips).y)
+            .sum::<f32>()
+            / 420.0
+    };
+    for (speed_mps, pull_mps2, depths) in [
+        (1.3, 1.0, -0.005..0.015),
+        (1.3, 3.5, 0.05..0.09),
+        (3.0, 3.5, 0.05..0.09),
+    ] {
+        let sunk = height(speed_mps, 0.0) - height(speed_mps, pull_mps2 / speed_mps);
+        assert!(
+            depths.contains(&sunk),
+            "{speed_mps} m/s, {pull_mps2} m/s²: {sunk} m"
+        );
+    }
+}
+
+#[test]
+fn trunks_lean_into_turns_and_against_stops() {
+    let skeleton = Skeleton::standard();
+    let lean = |frame: &Frame| {
+        let up = frame.model.rotation(Joint::UpperChest) * Vec3::Y;
+        let level = Quat::from_rotation_y(-frame.heading);
+        level * up
+    };
+    let mean = |frames: &[Frame]| frames.iter().map(lean).sum::<Vec3>() / frames.len() as f32;
+    let turning = |turn_rate_radps: f32| {
+        let mut walker = generator(Kind::Styled, 2);
+        let controls = Controls {
+            turn_rate_radps,
+            ..walking(1.4)
+        };
+        mean(&run(&mut walker, &skeleton, &controls, 600).0[120..])
+    };
+    // 0.7 of the angle whose tangent is v·ω over g.
+    let leans = turning(1.2).x - turning(-1.2).x;
+    assert!((0.2..0.28).contains(&leans), "{leans}");
+    let back = |seed: u64| {
+        let mut walker = generator(Kind::Styled, seed);
+        let (walked, _) = run(&mut walker, &skeleton, &walking(1.5), 200);
+        let (stopped, _) = run(&mut walker, &skeleton, &Controls::STAND, 45);
+        let leans = stopped.iter().map(|frame| lean(frame).z);
+        mean(&walked).z - leans.fold(1.0, f32::min)
+    };
+    let back: Vec<f32> = (1..9).map(back).collect();
+    let mean_back = back.iter().sum::<f32>() / back.len() as f32;
+    assert!(mean_back > 0.08, "lean back by {back:?}");
+}
