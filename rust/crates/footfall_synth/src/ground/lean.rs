@@ -10,8 +10,8 @@ use super::planter::Planter;
 use super::planter_state::Lean;
 use crate::gait::GRAVITY_MPS2;
 use core::f32::consts::PI;
+use footfall_core::Joint;
 use footfall_core::ease::smooth_step;
-use footfall_core::{Joint, Pose};
 use glam::{Quat, Vec2, Vec3};
 
 /// Share of the angle of balance by which bodies lean into turns, and lean of the legs beside that of the pelvis.
@@ -21,8 +21,8 @@ use glam::{Quat, Vec2, Vec3};
 const INTO_TURN: f32 = 0.72;
 const LEGS: f32 = 1.3;
 
-/// Share of the angle of balance by which trunks lean against a change of speed, and the share of that which the neck takes back.
-const AGAINST_CHANGE: f32 = 0.5;
+/// Share of the angle of balance by which pelvis and trunk lean against a change of speed, and the share of that which the neck takes back.
+const AGAINST_CHANGE: f32 = 0.75;
 const HEAD_KEPT: f32 = 0.5;
 
 /// Time for leaning and returning, seconds; in shorter steps a walker leans less.
@@ -44,14 +44,14 @@ const TIPPING_RADPS2: f32 = 8.0;
 const SINKING: f32 = 0.028;
 const FIRM_MPS2: f32 = 0.8;
 const SOFT_MPS2: f32 = 0.4;
-const SINKING_FOR: Vec2 = Vec2::new(0.4, 0.5);
+const SINKING_FOR: Vec2 = Vec2::new(0.4, 0.7);
 
 /// Accelerations that the body leans against in a step: to the left and forwards, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Pull {
     /// In the middle of the step, from the change of speed.
     pub(crate) within: Vec2,
-    /// At the end of the step, from the continuing turn.
+    /// At the end of the step, from the continuing turn and from what is left of the change.
     pub(crate) after: Vec2,
 }
 
@@ -78,11 +78,12 @@ impl Bend {
         let mut end = against(pull.after);
         let most = TIPPING_RADPS2 * secs * secs / 6.0;
         end.x = end.x.clamp(begin.angle.x - most, begin.angle.x + most);
+        // Nobody bends to and fro in an instant.
+        let unhurried = (secs / UNHURRIED_SECS).powi(2).min(1.0);
         Self {
             begin,
             end,
-            // Nobody bends to and fro in an instant.
-            middle: (secs / UNHURRIED_SECS).powi(2).min(1.0) * against(pull.within),
+            middle: unhurried * against(pull.within) - Vec2::new(0.0, 0.5 * end.y),
             secs,
         }
     }
@@ -126,13 +127,14 @@ impl Bend {
         }
         let last = (generated.len() - 1) as f32;
         for (index, frame) in generated.iter_mut().enumerate() {
-            let angle = self.at(index as f32 / last).angle.x;
-            let [body, legs] = [angle, LEGS * angle].map(|angle| Quat::from_rotation_z(-angle));
-            frame.hips = body * frame.hips;
+            let angle = self.at(index as f32 / last).angle;
+            let [body, legs] = [1.0, LEGS].map(|share| Quat::from_rotation_z(-share * angle.x));
+            let bowed = body * Quat::from_rotation_x(angle.y);
+            frame.hips = bowed * frame.hips;
             for leg in &mut frame.legs {
                 let reach = leg.ankle - leg.hip;
-                leg.hip = body * leg.hip;
-                leg.ankle = leg.hip + legs * reach;
+                leg.ankle = body * leg.hip + legs * reach;
+                leg.hip = bowed * leg.hip;
             }
         }
     }
@@ -155,8 +157,8 @@ impl Lean {
 }
 
 impl Planter {
-    /// Bends the trunks of a step's frames, and lowers their hips. The legs have to be solved then.
-    pub(crate) fn bow(&mut self, bend: &Bend, out: &mut [PlantedFrame]) {
+    /// Raises the heads of a step's frames, and lowers their hips. The legs have to be solved then.
+    pub(crate) fn sink(&mut self, bend: &Bend, out: &mut [PlantedFrame]) {
         self.state.lean = bend.at(1.0);
         if bend.is_none() {
             return;
@@ -165,29 +167,23 @@ impl Planter {
         let leg_length = 0.5 * (self.leg_lengths[0] + self.leg_lengths[1]);
         for (index, frame) in out.iter_mut().enumerate() {
             let lean = bend.at(index as f32 / last);
-            bend_trunk(frame, lean.angle.y);
+            raise_head(frame, lean.angle.y);
             frame.pose.root_position.y -= leg_length * lean.depth();
         }
     }
 }
 
-/// Bends the spine forwards, and the neck part of the way back.
-fn bend_trunk(frame: &mut PlantedFrame, angle: f32) {
+/// Turns the neck back by part of a trunk's lean forwards.
+fn raise_head(frame: &mut PlantedFrame, angle: f32) {
     let pose = &mut frame.pose;
-    let hips = frame.level.conjugate() * pose.rotation(Joint::Hips);
-    let axis = angle * Vec3::X;
-    let bend = |pose: &mut Pose, joint: Joint, parent: Quat, axis: Vec3| {
-        let rotation = &mut pose.rotations[joint.index()];
-        // Twice the tangent of half of so small an angle is the angle.
-        let half = 0.5 * (parent.conjugate() * axis);
-        *rotation = (Quat::from_xyzw(half.x, half.y, half.z, 1.0) * *rotation).normalize();
-    };
-    bend(pose, Joint::Spine, hips, axis);
-    let trunk = [Joint::Spine, Joint::Chest, Joint::UpperChest];
-    let trunk = trunk
-        .iter()
-        .fold(hips, |parent, joint| parent * pose.rotation(*joint));
-    bend(pose, Joint::Neck, trunk, -HEAD_KEPT * axis);
+    let trunk = [Joint::Hips, Joint::Spine, Joint::Chest, Joint::UpperChest];
+    let trunk = trunk.iter().fold(frame.level.conjugate(), |parent, joint| {
+        parent * pose.rotation(*joint)
+    });
+    let neck = &mut pose.rotations[Joint::Neck.index()];
+    // Twice the tangent of half of so small an angle is the angle.
+    let half = trunk.conjugate() * (-0.5 * HEAD_KEPT * angle * Vec3::X);
+    *neck = (Quat::from_xyzw(half.x, half.y, half.z, 1.0) * *neck).normalize();
 }
 
 #[cfg(test)]
@@ -234,20 +230,22 @@ mod tests {
         assert!((turn(4.0) - 0.015).abs() < 0.002, "{}", turn(4.0));
         assert!((turn(-3.0) - turn(3.0)).abs() < 1e-6);
         let change = |mps2: f32| depth(Vec2::new(0.0, mps2));
-        assert!(change(1.5) == 0.0 && change(2.5) < 0.008, "{}", change(2.5));
-        assert!((change(4.0) - 0.024).abs() < 0.002, "{}", change(4.0));
-        assert!(change(20.0) < 0.06, "{}", change(20.0));
+        assert!(change(1.0) == 0.0, "{}", change(1.0));
+        assert!((change(2.5) - 0.019).abs() < 0.002, "{}", change(2.5));
+        assert!(change(20.0) < 0.04, "{}", change(20.0));
         assert!((change(-3.0) - change(3.0)).abs() < 1e-6);
     }
 
     #[test]
     fn bodies_lean_over_their_feet() {
         let skeleton = Skeleton::standard();
-        let begin = Lean {
-            angle: Vec2::new(0.2, 0.1),
-            rate: Vec2::ZERO,
+        let lean_over = |x: f32, y: f32, frames: &mut [GeneratedFrame]| {
+            let begin = Lean {
+                angle: Vec2::new(x, y),
+                rate: Vec2::ZERO,
+            };
+            Bend::new(begin, &Pull::default(), 0.5).lean_over(frames);
         };
-        let bend = Bend::new(begin, &Pull::default(), 0.5);
         let poses = [PlantedFrame::default(), PlantedFrame::default()];
         let mut frames = [GeneratedFrame::default(), GeneratedFrame::default()];
         let stride = Stride {
@@ -257,7 +255,7 @@ mod tests {
         };
         GeneratedFrame::fill(&mut frames, &poses, &skeleton, |_| stride);
         let upright = frames.clone();
-        bend.lean_over(&mut frames);
+        lean_over(0.2, 0.0, &mut frames);
         let up = frames[0].hips * Vec3::Y;
         assert!((up.x - 0.2_f32.sin()).abs() < 1e-4 && up.z.abs() < 1e-6);
         for side in Side::BOTH {
@@ -268,22 +266,29 @@ mod tests {
             assert!((reached.angle_between(reaches) - aside).abs() < 0.01 && reaches.x < reached.x);
             assert_eq!(before.foot, after.foot);
         }
+        let mut bowed = upright.clone();
+        lean_over(0.0, 0.2, &mut bowed);
+        let up = bowed[0].hips * Vec3::Y;
+        assert!(up.x.abs() < 1e-6 && (up.z - 0.2_f32.sin()).abs() < 1e-4);
+        for side in Side::BOTH {
+            let ankle = |frames: &[GeneratedFrame]| frames[0].legs[side.index()].ankle;
+            assert!(ankle(&upright).distance(ankle(&bowed)) < 1e-6);
+        }
     }
 
     #[test]
-    fn trunks_bend_forwards_whatever_way_they_face() {
+    fn heads_are_raised_whatever_way_they_face() {
         for heading in [0.0, 2.0] {
             let facing = Quat::from_rotation_y(heading);
             let mut frame = PlantedFrame {
                 level: facing,
                 ..PlantedFrame::default()
             };
-            frame.pose.rotations[Joint::Hips.index()] = facing;
-            bend_trunk(&mut frame, 0.2);
-            let spine = facing * frame.pose.rotation(Joint::Spine);
-            let up = facing.conjugate() * (spine * Vec3::Y);
-            assert!(up.x.abs() < 1e-4 && (up.z - 0.2).abs() < 0.01, "{up}");
-            assert_eq!(frame.pose.rotation(Joint::LeftUpperLeg), Quat::IDENTITY);
+            let bowed = Quat::from_rotation_x(0.2);
+            frame.pose.rotations[Joint::Hips.index()] = facing * bowed;
+            raise_head(&mut frame, 0.2);
+            let up = bowed * (frame.pose.rotation(Joint::Neck) * Vec3::Y);
+            assert!(up.x.abs() < 1e-4 && (up.z - 0.1).abs() < 0.01, "{up}");
         }
     }
 }

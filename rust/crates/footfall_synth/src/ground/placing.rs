@@ -12,6 +12,9 @@ use glam::Vec2;
 /// Turn rates from which a walker leans less, and at which it turns about a foot rather than along a curve, rad/s.
 const PIVOT_RADPS: [f32; 2] = [2.5, 3.5];
 
+/// Share of a change of speed against which a walker still leans as the step ends.
+const LEFT: f32 = 0.5;
+
 /// Greatest factor on a stride for the lean into a turn.
 const WIDEST: f32 = 1.25;
 
@@ -48,9 +51,12 @@ impl Placing<'_> {
         let [before, after] = self.ends_mps();
         let [from, to] = PIVOT_RADPS;
         let curving = 1.0 - smooth_step((self.turn_rate.abs() - from) / (to - from));
+        let change = (after.y - before.y) / secs;
+        // Who comes to rest is upright then.
+        let left = LEFT * self.amplitude_at(1.0) * change;
         Pull {
-            within: Vec2::new(0.0, (after.y - before.y) / secs),
-            after: Vec2::new(curving * after.y * self.turn_rate, 0.0),
+            within: Vec2::new(0.0, change),
+            after: Vec2::new(curving * after.y * self.turn_rate, left),
         }
     }
 

@@ -178,7 +178,7 @@ impl PlantedStep {
         );
         bend.lean_over(generated);
         planter.plant_step(generated, &timing, course, frames);
-        planter.bow(&bend, frames);
+        planter.sink(&bend, frames);
         planter.solve_legs(generated, frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,
