@@ -303,6 +303,52 @@ fn whoever_arrives_slows_down_and_stops_at_the_goal() {
     }
 }
 
+/// Goals are 0.3 to 0.7 m beside somebody who stands.
+#[test]
+fn whoever_is_sent_beside_somebody_comes_to_rest() {
+    let mut crowd = crowd(Routing::Scripted);
+    let on_circle = |turns: f32| Vec2::from_angle(2.0 * PI * turns);
+    let pairs = (0..200_u8).map(|n| Vec2::new(20.0 * f32::from(n), 0.0));
+    let ways: Vec<[Vec2; 3]> = pairs
+        .enumerate()
+        .map(|(n, stands)| {
+            let from = stands + 7.0 * on_circle(n as f32 / 40.0);
+            [
+                stands,
+                from,
+                stands + (0.3 + 0.1 * (n / 40) as f32) * on_circle(0.618 * n as f32),
+            ]
+        })
+        .collect();
+    let begin = |place: Vec2| (Vec3::new(place.x, 0.0, place.y), 0.0);
+    let starts: Vec<(Vec3, f32)> = ways
+        .iter()
+        .flat_map(|way| [begin(way[0]), begin(way[1])])
+        .collect();
+    let names = crowd.add(starts.into_iter());
+    walk(&mut crowd, 0.1, |_| {});
+    let row = |crowd: &Crowd, index: usize| crowd.roster().place(names[index]).expect("its row");
+    for (index, way) in ways.iter().enumerate() {
+        for (which, goal) in [way[0], way[2]].into_iter().enumerate() {
+            let row = row(&crowd, 2 * index + which);
+            crowd.agents_mut()[row].go_to(goal);
+        }
+    }
+    walk(&mut crowd, 25.0, |_| {});
+    let place = |crowd: &Crowd, index: usize| {
+        let place = crowd.agents()[row(crowd, index)].place;
+        Vec2::new(place.x, place.z)
+    };
+    let before: Vec<Vec2> = (0..names.len()).map(|index| place(&crowd, index)).collect();
+    walk(&mut crowd, 3.0, |_| {});
+    for (index, then) in before.iter().enumerate() {
+        let went = then.distance(place(&crowd, index));
+        assert!(went < 0.05, "{index} goes to and fro: {went} m");
+        let off = then.distance(ways[index / 2][if index % 2 == 0 { 0 } else { 2 }]);
+        assert!(off < 0.9, "{index} rests {off} m from its place");
+    }
+}
+
 #[test]
 fn ground_that_ends_leads_along_itself() {
     let mut crowd = crowd(Routing::Scripted);

@@ -15,8 +15,12 @@ const ARRIVING_RATE: f32 = 0.8;
 const AHEAD_SECS: f32 = 0.7;
 /// Space that a walker needs to turn around in an arc, metres.
 const ARC_M: f32 = 2.0;
-/// Distance to the goal below which a walker takes no further step, metres.
+/// Distance to the goal below which a walker takes no further step, metres, and the same where somebody stands beside the goal.
 const THERE_M: f32 = 0.5;
+const BESIDE_M: f32 = 0.8;
+/// Distance from the goal, metres, and speed, m/s, below which somebody stands beside it.
+const TAKEN_M: f32 = 0.9;
+const STANDS_MPS: f32 = 0.2;
 
 impl Agent {
     /// Sets speed and turning for the next step. The walker slows down for its last goal if it `stops` there.
@@ -29,9 +33,16 @@ impl Agent {
                 0.0
             }
             Goal::Place(place) => {
-                let far = place.distance(self.level());
+                let here = self.level();
+                let far = place.distance(here);
                 let last = self.route.is_empty();
-                let left = if last && far < THERE_M {
+                // Who avoids somebody at his goal would go to and fro before it.
+                let taken = others.iter().any(|other| {
+                    let stands = other.velocity.length() < STANDS_MPS && other.place != here;
+                    stands && other.place.distance(place) < TAKEN_M
+                });
+                let there = if taken { BESIDE_M } else { THERE_M };
+                let left = if last && far < there {
                     0.0
                 } else if last && stops {
                     (far - AHEAD_SECS * self.present_mps()).max(0.0)
