@@ -44,7 +44,7 @@ const TIPPING_RADPS2: f32 = 8.0;
 const SINKING: f32 = 0.028;
 const FIRM_MPS2: f32 = 0.8;
 const SOFT_MPS2: f32 = 0.4;
-const SINKING_FOR: Vec2 = Vec2::new(0.4, 0.7);
+const SINKING_FOR: Vec2 = Vec2::new(0.5, 0.7);
 
 /// Accelerations that the body leans against in a step: to the left and forwards, m/s².
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,11 +115,6 @@ impl Bend {
         }
     }
 
-    /// Returns the distance of the feet outside the hips at the end of the step, in leg lengths.
-    pub(super) fn outwards(&self) -> f32 {
-        (LEGS * self.end.x.abs()).sin()
-    }
-
     /// Leans the generated bodies of a step into its turn, about their hips. Feet stay level.
     pub(super) fn lean_over(&self, generated: &mut [GeneratedFrame]) {
         if self.is_none() {
@@ -146,6 +141,11 @@ impl Bend {
 }
 
 impl Lean {
+    /// Returns the distance to the left by which the hips are beside the feet's path, in leg lengths.
+    pub(super) fn aside(&self) -> f32 {
+        (LEGS * self.angle.x).sin()
+    }
+
     /// Returns the depth by which the hips sink, in leg lengths.
     pub(super) fn depth(&self) -> f32 {
         let balance = self.angle.abs() / Vec2::new(INTO_TURN, AGAINST_CHANGE);
@@ -157,9 +157,14 @@ impl Lean {
 }
 
 impl Planter {
-    /// Raises the heads of a step's frames, and lowers their hips. The legs have to be solved then.
-    pub(crate) fn sink(&mut self, bend: &Bend, out: &mut [PlantedFrame]) {
+    /// Leans the generated bodies of a step over their feet.
+    pub(crate) fn lean_over(&mut self, bend: &Bend, generated: &mut [GeneratedFrame]) {
+        bend.lean_over(generated);
         self.state.lean = bend.at(1.0);
+    }
+
+    /// Raises the heads of a step's frames, and lowers their hips. The legs have to be solved then.
+    pub(crate) fn sink(&self, bend: &Bend, out: &mut [PlantedFrame]) {
         if bend.is_none() {
             return;
         }
@@ -226,8 +231,8 @@ mod tests {
             Bend::new(Lean::default(), &pull, 0.8).at(1.0).depth()
         };
         let turn = |mps2: f32| depth(Vec2::new(mps2, 0.0));
-        assert!(turn(1.5) == 0.0 && turn(2.5) < 0.005, "{}", turn(2.5));
-        assert!((turn(4.0) - 0.015).abs() < 0.002, "{}", turn(4.0));
+        assert!(turn(1.5) == 0.0 && turn(2.5) < 0.008, "{}", turn(2.5));
+        assert!((turn(4.0) - 0.025).abs() < 0.003, "{}", turn(4.0));
         assert!((turn(-3.0) - turn(3.0)).abs() < 1e-6);
         let change = |mps2: f32| depth(Vec2::new(0.0, mps2));
         assert!(change(1.0) == 0.0, "{}", change(1.0));

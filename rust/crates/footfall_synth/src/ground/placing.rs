@@ -1,7 +1,7 @@
 //! Placing of a step on the ground: direction, speed and postures.
 
 use super::displacement::Displacement;
-use super::lean::{Bend, Pull};
+use super::lean::Pull;
 use super::speed_change::SpeedChange;
 use crate::gait::Posture;
 use crate::plan::StepShape;
@@ -14,12 +14,6 @@ const PIVOT_RADPS: [f32; 2] = [2.5, 3.5];
 
 /// Share of a change of speed against which a walker still leans as the step ends.
 const LEFT: f32 = 0.5;
-
-/// Greatest factor on a stride for the lean into a turn.
-const WIDEST: f32 = 1.25;
-
-/// Speed below which a turn widens a stride no further, m/s.
-const SLOW_MPS: f32 = 0.5;
 
 /// Placing of a step on the ground.
 #[derive(Clone, Copy, Debug)]
@@ -58,13 +52,6 @@ impl Placing<'_> {
             within: Vec2::new(0.0, change),
             after: Vec2::new(curving * after.y * self.turn_rate, left),
         }
-    }
-
-    /// Returns the length of the feet's way in a turn beside that of the hips, which lean into it.
-    pub(super) fn widening(&self, bend: &Bend, leg_length: f32) -> f32 {
-        let [_, after] = self.ends_mps();
-        let outwards = leg_length * bend.outwards();
-        (1.0 + outwards * self.turn_rate.abs() / after.y.abs().max(SLOW_MPS)).min(WIDEST)
     }
 
     /// Returns the change of speed from the previous step to the end of this one.

@@ -118,7 +118,6 @@ impl PlantedStep {
             before.map_or((Strafe::NONE, stride), |state| (state.strafe, state.stride));
         let step_secs = frame_secs * timing.frames as f32;
         let bend = Bend::new(lean_before, &placing.pull(step_secs), step_secs);
-        let stride = stride * placing.widening(&bend, self.skeleton.mean_leg_length());
         let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let generated = &mut generated[..=timing.frames];
@@ -176,7 +175,7 @@ impl PlantedStep {
             facing - strafe.turn,
             frames,
         );
-        bend.lean_over(generated);
+        planter.lean_over(&bend, generated);
         planter.plant_step(generated, &timing, course, frames);
         planter.sink(&bend, frames);
         planter.solve_legs(generated, frames);

@@ -143,11 +143,14 @@ impl Planter {
         self.landing_height(last, landing) - hips_above(last, timing.leading, Quat::IDENTITY).y
     }
 
-    /// The walker's place on the ground: a cubic path through the hips' places at initial contacts.
+    /// The walker's place on the ground: a cubic path through the hips' places at initial contacts, or through those beside them where the hips of a body that leans
+    /// into a turn would be if it were upright. They are above the feet's path, which goes as fast as asked.
     fn glide(&mut self, timing: &StepTiming, out: &mut [PlantedFrame]) {
         let from = self.state.ground_position;
-        let hips = out[timing.frames].pose.root_position;
-        let to = Vec3::new(hips.x, 0.0, hips.z);
+        let last = &out[timing.frames];
+        let aside = self.state.lean.aside() * self.leg_lengths[timing.leading.index()];
+        let upright = last.pose.root_position - last.level * (aside * Vec3::X);
+        let to = upright.with_y(0.0);
         let arrival = to - from;
         let secs = timing.frames as f32 * self.frame_secs;
         let departure = self
