@@ -1,8 +1,8 @@
-//! Lean: the body leans into turns, the trunk ahead of a gain of speed and against a loss of it, for which the hips sink.
+//! Lean: the body leans into turns, pelvis and trunk ahead of a gain of speed and against a loss of it, and the hips sink.
 //!
 //! A body in balance leans so far that gravity and acceleration together point along it: the tangent of the angle is the acceleration over g, which is
-//! `v·ω` in a turn. Legs, pelvis, trunk and head lean into a turn as one, so that feet come down outside the hips. Against a change of speed the trunk
-//! leans, and the neck takes part of it back.
+//! `v·ω` in a turn. Legs, pelvis, trunk and head lean into a turn as one, so that feet come down outside the hips. Against a change of speed pelvis and
+//! trunk lean, and the neck takes part of it back.
 
 use super::frame::PlantedFrame;
 use super::generated::GeneratedFrame;

@@ -24,7 +24,7 @@ pub(crate) struct PlanterState {
     pub(crate) balance: Vec2,
     /// Foot that is still in the air, after a step of a run or a cut.
     pub(crate) airborne: Option<Airborne>,
-    /// Lean of the trunk.
+    /// Lean of the body.
     pub(crate) lean: Lean,
 }
 
@@ -63,7 +63,7 @@ impl Airborne {
     }
 }
 
-/// Lean of the trunk: to the left and forwards, radians, and its rate of change, rad/s.
+/// Lean of the body to the left, and of pelvis and trunk forwards, radians, and its rate of change, rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Lean {
     pub(crate) angle: Vec2,
