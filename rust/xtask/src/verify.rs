@@ -42,12 +42,13 @@ const STAGES: [&[Lane]; 4] = [
         step("godot-play", checks::play_in_godot),
         // It replaces the library of the project that others play.
         step("godot-editor", checks::tests_in_the_editor),
+        // Peers whose frames wait for a processor make some steps elsewhere.
+        step("godot-network", network::check),
     ]],
-    // These wait for most of their time: for frames, for networks, for ports.
+    // These wait for most of their time: for frames and for ports.
     &[
         &[step("godot-tests", checks::tests_in_godot)],
         &[
-            step("godot-network", network::check),
             step("export", checks::exported_demo),
             step("newcomer", newcomer::check),
             step("godot-demo", checks::demo_in_godot),
