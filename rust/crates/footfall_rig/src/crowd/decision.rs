@@ -37,12 +37,14 @@ impl Agent {
                 let far = place.distance(here);
                 let last = self.route.is_empty();
                 // Who avoids somebody at his goal would go to and fro before it.
-                let taken = others.iter().any(|other| {
-                    let stands = other.velocity.length() < STANDS_MPS && other.place != here;
-                    stands && other.place.distance(place) < TAKEN_M
-                });
-                let there = if taken { BESIDE_M } else { THERE_M };
-                let left = if last && far < there {
+                let is_taken = || {
+                    others.iter().any(|other| {
+                        let stands = other.velocity.length() < STANDS_MPS && other.place != here;
+                        stands && other.place.distance(place) < TAKEN_M
+                    })
+                };
+                let there = far < THERE_M || (far < BESIDE_M && is_taken());
+                let left = if last && there {
                     0.0
                 } else if last && stops {
                     (far - AHEAD_SECS * self.present_mps()).max(0.0)

@@ -10,7 +10,7 @@ use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
 
 /// Turn rates from which a walker leans less, and at which it turns about a foot rather than along a curve, rad/s.
-const PIVOT_RADPS: [f32; 2] = [2.5, 3.5];
+const CURVE_RADPS: [f32; 2] = [2.5, 3.5];
 
 /// Share of a change of speed against which a walker still leans as the step ends.
 const LEFT: f32 = 0.5;
@@ -43,7 +43,7 @@ impl Placing<'_> {
     /// Returns the accelerations to lean against in a step of this duration. Runs lean into turns, too; sidesteps do not lean.
     pub(super) fn pull(&self, secs: f32) -> Pull {
         let [before, after] = self.ends_mps();
-        let [from, to] = PIVOT_RADPS;
+        let [from, to] = CURVE_RADPS;
         let curving = 1.0 - smooth_step((self.turn_rate.abs() - from) / (to - from));
         let change = (after.y - before.y) / secs;
         // Who comes to rest is upright then.
