@@ -261,6 +261,43 @@ proptest! {
     }
 }
 
+/// Each number of a state in turn becomes one of hundreds or millions, within the limits of a state; some of these walk nowhere.
+#[test]
+fn a_state_that_walks_nowhere_is_refused_and_changes_nothing() {
+    let mut walker = generator(1);
+    for frame in 0..130 {
+        play(&mut walker, frame);
+    }
+    let state = walker.state();
+    let mut other = generator(2);
+    play(&mut other, 0);
+    let unchanged = other.state();
+    let mut nowhere = 0;
+    for at in 0..250 {
+        for high_byte in [67, 75, 195, 203] {
+            let mut damaged = state.clone();
+            damaged[at] = high_byte;
+            match other.restore(&damaged) {
+                Ok(()) => {
+                    let pose = play(&mut other, 131);
+                    assert!(pose.root_position.is_finite(), "{high_byte} at {at}");
+                    other.restore(&unchanged).unwrap();
+                }
+                Err(StateError::Nowhere) => {
+                    nowhere += 1;
+                    assert_eq!(other.state(), unchanged);
+                    let mut same = generator(2);
+                    same.restore(&unchanged).unwrap();
+                    assert_eq!(play(&mut other, 1), play(&mut same, 1));
+                    other.restore(&unchanged).unwrap();
+                }
+                Err(_) => {}
+            }
+        }
+    }
+    assert!(nowhere > 5, "{nowhere}");
+}
+
 fn switching(seed: u64) -> GaitGenerator {
     let path = concat!(
         env!("CARGO_MANIFEST_DIR"),

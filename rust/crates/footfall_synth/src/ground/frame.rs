@@ -20,6 +20,18 @@ pub(crate) struct PlantedFrame {
     pub(crate) contact: [bool; 2],
 }
 
+impl PlantedFrame {
+    /// Returns true when place and pose are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let Pose {
+            root_position,
+            rotations,
+        } = &self.pose;
+        let places = root_position.is_finite() && self.ground_position.is_finite();
+        places && rotations.iter().all(|rotation| rotation.is_finite())
+    }
+}
+
 impl AsRef<Pose> for PlantedFrame {
     fn as_ref(&self) -> &Pose {
         &self.pose

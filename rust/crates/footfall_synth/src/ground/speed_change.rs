@@ -62,7 +62,9 @@ pub(super) fn urge(begins: f32, ends: f32, s: f32) -> f32 {
 /// the step, or accelerate throughout it: feet planted for another speed leave more travel than the new speed needs, or less.
 pub(super) fn steady(begins: f32, ends: f32) -> f32 {
     let bounds = [-0.5 * begins, -2.0 * begins];
-    ends.clamp(bounds[0].min(bounds[1]), bounds[0].max(bounds[1]))
+    // A damaged state may begin with any speed, and `clamp` panics at one that is not a number.
+    ends.max(bounds[0].min(bounds[1]))
+        .min(bounds[0].max(bounds[1]))
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ use super::step_source::Stretches;
 use super::style_space::Blend;
 use crate::error::SynthError;
 use crate::gait::{Amplitude, Manner, Pace, StepRequest};
-use crate::ground::{Displacement, PlantedStep};
+use crate::ground::{Displacement, PlantedFrame, PlantedStep};
 use crate::plan::{Planner, StepDraw, StepPlan, StepShape, TIE, TIE_LEN, WINDOW};
 use footfall_core::{Side, Skeleton, StepPosition};
 use glam::Vec2;
@@ -220,6 +220,12 @@ impl StepWindow {
         self.plan(planner, 1, buffers);
         self.solve_and_plant(buffers);
         Ok(())
+    }
+
+    /// Returns true when all frames of the current step are finite.
+    pub(crate) fn is_finite(&self) -> bool {
+        let frames = &self.planted.frames[..=self.plans[1].shape.ground_frames()];
+        frames.iter().all(PlantedFrame::is_finite)
     }
 
     /// Returns the share of the current step that had passed when it was replanned.

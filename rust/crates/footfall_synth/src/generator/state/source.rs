@@ -2,7 +2,6 @@
 
 use super::{Led, Quick, Running, Source, State, StateError, detail_of};
 use crate::config::GeneratorConfig;
-use crate::error::SynthError;
 use crate::gait::{Manner, Pace, StepRequest};
 use crate::ground::{Lean, PlanterState};
 use crate::plan::{MAX_COMPONENTS, StepDraw, TIE_LEN, WINDOW};
@@ -142,6 +141,12 @@ impl State {
         // A walker that goes back a little, as in predictive netcode, is measured already.
         let known =
             planner.is_same_walker(&steps.planner) && Arc::ptr_eq(&next, &steps.measured.blend);
+        let window = &steps.window;
+        let unchanged = (
+            window.origin().clone(),
+            window.draws().clone(),
+            window.blends().map(Arc::clone),
+        );
         space.with_buffers(|buffers| {
             let measured = if known {
                 None
@@ -161,10 +166,19 @@ impl State {
                     .window
                     .restore(&mut planner, blends, draws, origin, buffers)?;
             }
+            // Numbers within their limits may still add up to a step that nobody takes.
+            if !steps.window.is_finite() {
+                let (origin, draws, blends) = unchanged;
+                let blends = blends.each_ref();
+                steps
+                    .window
+                    .restore(&mut steps.planner, blends, draws, origin, buffers)?;
+                return Err(StateError::Nowhere);
+            }
             if let Some(measured) = measured {
                 steps.measured = measured;
             }
-            Ok::<_, SynthError>(())
+            Ok::<_, StateError>(())
         })?;
         steps.planner = planner;
         steps.velocity_mps = self.velocity_mps.into();
