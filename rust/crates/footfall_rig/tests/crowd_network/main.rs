@@ -187,7 +187,7 @@ fn who_stood_still_finds_the_others_again() {
 /// Networks differ in the steps that they lose, so that several count together.
 #[test]
 fn a_small_budget_is_kept_and_shared_by_who_needs_it() {
-    const NETWORKS: u8 = 6;
+    const NETWORKS: u8 = 16;
     let mut most_of_all = 0.0;
     for chance in 0..NETWORKS {
         let mut link = Link::new(wander(), 120);

@@ -29,9 +29,10 @@ use quick::Quick;
 use running::Running;
 use serde::{Deserialize, Serialize};
 
-/// Version of the layout that this build writes. It also reads earlier versions, whose pending jumps go from the character, and which lack corrections of the way, climbs, balance, jumps and steps that change in their middle,
-/// running and standing motion.
-const VERSION: u8 = 11;
+/// Version of the layout that this build writes. It also reads earlier versions, whose legs do not lean against changes of speed, whose pending jumps go from the
+/// character, and which lack corrections of the way, climbs, balance, jumps and steps that change in their middle, running and standing motion.
+const VERSION: u8 = 12;
+const UPRIGHT_VERSION: u8 = 11;
 const SEEN_VERSION: u8 = 10;
 const UNLED_VERSION: u8 = 9;
 const LEVEL_VERSION: u8 = 8;
@@ -125,9 +126,8 @@ enum Source {
     },
 }
 
-/// Further parts of a state: run, replanned step, crouch and jump, balance of the last landing, lean into a climb, and
-/// displacement.
-type More = (Running, Quick, Moving, [f32; 2], Climbing, Led);
+/// Further parts of a state: run, replanned step, crouch and jump, balance of the last landing, lean into a climb, displacement, and lean of the standing leg.
+type More = (Running, Quick, Moving, [f32; 2], Climbing, Led, f32);
 
 /// Progress of a walker's life, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
@@ -213,6 +213,7 @@ impl GaitGenerator {
             balance,
             Climbing::of(self),
             Led::of(self),
+            planter.map_or(0.0, |feet| feet.lean.leg),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -227,38 +228,47 @@ impl GaitGenerator {
         let (still, level) = (Moving::default(), Climbing::default());
         let free = Led::default();
         let (alive, more): (Alive, More) = match state.version {
-            VERSION | SEEN_VERSION => postcard::from_bytes(rest)?,
+            VERSION => postcard::from_bytes(rest)?,
+            UPRIGHT_VERSION | SEEN_VERSION => {
+                let (alive, (running, quick, moving, balance, climbing, led)) =
+                    postcard::from_bytes(rest)?;
+                (alive, (running, quick, moving, balance, climbing, led, 0.0))
+            }
             UNLED_VERSION => {
                 let (alive, (running, quick, moving, balance, climbing)) =
                     postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, balance, climbing, free))
+                (
+                    alive,
+                    (running, quick, moving, balance, climbing, free, 0.0),
+                )
             }
             LEVEL_VERSION => {
                 let (alive, (running, quick, moving, balance)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, balance, level, free))
+                (alive, (running, quick, moving, balance, level, free, 0.0))
             }
             UNBALANCED_VERSION => {
                 let (alive, (running, quick, moving)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, [0.0; 2], level, free))
+                (alive, (running, quick, moving, [0.0; 2], level, free, 0.0))
             }
             RUNNING_VERSION => {
                 let (alive, running) = postcard::from_bytes(rest)?;
-                (alive, (running, slow, still, [0.0; 2], level, free))
+                (alive, (running, slow, still, [0.0; 2], level, free, 0.0))
             }
             WALKING_VERSION => {
                 let alive = postcard::from_bytes(rest)?;
                 (
                     alive,
-                    (Running::default(), slow, still, [0.0; 2], level, free),
+                    (Running::default(), slow, still, [0.0; 2], level, free, 0.0),
                 )
             }
             STILL_VERSION => {
-                let still = (Running::default(), slow, still, [0.0; 2], level, free);
+                let running = Running::default();
+                let still = (running, slow, still, [0.0; 2], level, free, 0.0);
                 (Alive::default(), still)
             }
             other => return Err(StateError::Version(other)),
         };
-        let (running, quick, moving, balance, climbing, led) = more;
+        let (running, quick, moving, balance, climbing, led, leg) = more;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -267,7 +277,11 @@ impl GaitGenerator {
             moving.is_sensible(),
             climbing.is_sensible(),
             led.is_sensible(),
-            balance.map(f64::from).into_iter().all(is_reasonable),
+            balance
+                .into_iter()
+                .chain([leg])
+                .map(f64::from)
+                .all(is_reasonable),
         ];
         if sensible.contains(&false) {
             return Err(StateError::Damaged);
@@ -279,11 +293,12 @@ impl GaitGenerator {
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                let more = (&running, &quick, moving.leap_m, balance, &led);
+                let posture = (quick.lean(leg), balance.into());
+                let more = (&running, &quick, moving.leap_m, posture, &led);
                 state.take_up(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => {
-                state.resume(steps, (quick.lean(), balance.into()), &config)?;
+                state.resume(steps, (quick.lean(leg), balance.into()), &config)?;
             }
         }
         self.config = config;
@@ -306,7 +321,7 @@ impl GaitGenerator {
         self.position = state.position.clamp(0.0, frames);
         climbing.resume(self);
         self.tell_place();
-        moving.resume(self, state.version < VERSION);
+        moving.resume(self, state.version < UPRIGHT_VERSION);
         Ok(())
     }
 }

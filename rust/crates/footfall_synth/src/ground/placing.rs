@@ -46,11 +46,12 @@ impl Placing<'_> {
         let [from, to] = CURVE_RADPS;
         let curving = 1.0 - smooth_step((self.turn_rate.abs() - from) / (to - from));
         let change = (after.y - before.y) / secs;
-        // Who comes to rest is upright then.
-        let left = LEFT * self.amplitude_at(1.0) * change;
+        // Who comes to rest is upright then, and who turns about a foot faces another way.
+        let left = LEFT * curving * self.amplitude_at(1.0) * change;
         Pull {
             within: Vec2::new(0.0, change),
             after: Vec2::new(curving * after.y * self.turn_rate, left),
+            rests: [0.0, 1.0].map(|s| self.amplitude_at(s) <= 0.0),
         }
     }
 

@@ -175,7 +175,7 @@ impl PlantedStep {
             facing - strafe.turn,
             frames,
         );
-        planter.lean_over(&bend, generated);
+        planter.lean_over(&bend, timing.leading, generated);
         planter.plant_step(generated, &timing, course, frames);
         planter.sink(&bend, frames);
         planter.solve_legs(generated, frames);

@@ -63,9 +63,11 @@ impl Airborne {
     }
 }
 
-/// Lean of the body to the left, and of pelvis and trunk forwards, radians, and its rate of change, rad/s.
+/// Lean of the body to the left, and of pelvis and trunk forwards, radians, its rate of change, rad/s, and the lean of the standing leg.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Lean {
     pub(crate) angle: Vec2,
     pub(crate) rate: Vec2,
+    /// Lean of the standing leg forwards, radians: the hips are ahead of its foot by so much more than as generated.
+    pub(crate) leg: f32,
 }

@@ -38,6 +38,8 @@ const TURNS_ON: f32 = 0.5;
 /// Error of the heading that one step cannot correct, radians; the walk then turns by this much more at most, rad/s, and slows down. Typical duration of a step, seconds.
 const ASTRAY_RAD: f32 = 0.6;
 const TURNS_BACK_RADPS: f32 = 1.3;
+/// The same error beyond which even a step that came too late turns the walk; below, it comes right with the first step in time.
+const LOST_RAD: f32 = 1.5;
 const STEP_SECS: f32 = 0.55;
 
 /// A received step, on our clock.
@@ -165,7 +167,7 @@ impl LedWalker {
         }
         let number = walker.number();
         let natural = self.next_number(walker, now);
-        let mut moved = LedAim::None;
+        let (mut moved, mut astray_rad) = (LedAim::None, 0.0);
         while let Some(next) = self.first().copied() {
             let steps = next.number.wrapping_sub(natural).cast_signed();
             if steps > 0 {
@@ -180,6 +182,7 @@ impl LedWalker {
                 && let Some(own) = walker.start_from_aim()
             {
                 let aim = now.start.local(&next.aim);
+                astray_rad = wrap_angle(aim.heading - own.heading);
                 moved = LedAim::Moved(aim.global(&own.local(&GroundTransform::default())));
             }
         }
@@ -192,7 +195,12 @@ impl LedWalker {
             controls: if stands && self.first().is_none() {
                 Controls::STAND
             } else {
-                self.made.map_or(Controls::STAND, |made| made.controls)
+                let made = self.made.map_or(Controls::STAND, |made| made.controls);
+                if astray_rad.abs() > LOST_RAD {
+                    turned_back(made, astray_rad)
+                } else {
+                    made
+                }
             },
             aim: match self.last {
                 Some(last) if last.rests && self.first().is_none() => {
@@ -291,16 +299,11 @@ impl ScheduledStep {
     /// The step for the walker, under another number if the feet require one.
     fn step(&self, number: u16, walker: &CrowdWalker, now: &Now<'_>) -> LedStep {
         let aim = now.start.local(&self.aim);
-        let mut controls = self.controls;
         let turn = wrap_angle(aim.heading - walker.start_from_character().heading);
-        let off = turn - STEP_SECS * controls.turn_rate_radps;
-        if off.abs() > ASTRAY_RAD && !controls.is_standing() {
-            controls.turn_rate_radps += off.clamp(-TURNS_BACK_RADPS, TURNS_BACK_RADPS);
-            controls.speed_mps *= (1.2 - off.abs()).clamp(0.25, 1.0);
-        }
+        let off = turn - STEP_SECS * self.controls.turn_rate_radps;
         LedStep {
             number,
-            controls,
+            controls: turned_back(self.controls, off),
             aim: if self.rests {
                 LedAim::Rest(aim)
             } else {
@@ -308,6 +311,15 @@ impl ScheduledStep {
             },
         }
     }
+}
+
+/// Returns the controls of a step for a walker whose heading will be off by this angle, radians.
+fn turned_back(mut controls: Controls, off: f32) -> Controls {
+    if off.abs() > ASTRAY_RAD && !controls.is_standing() {
+        controls.turn_rate_radps += off.clamp(-TURNS_BACK_RADPS, TURNS_BACK_RADPS);
+        controls.speed_mps *= (1.2 - off.abs()).clamp(0.25, 1.0);
+    }
+    controls
 }
 
 /// Time and place of a walker in one frame.

@@ -70,9 +70,10 @@ impl Quick {
         }
     }
 
-    pub(super) fn lean(&self) -> Lean {
+    /// Returns the lean of a body whose standing leg leans forwards by `leg`, radians.
+    pub(super) fn lean(&self, leg: f32) -> Lean {
         let [angle, rate] = self.lean.map(Vec2::from);
-        Lean { angle, rate }
+        Lean { angle, rate, leg }
     }
 
     pub(super) fn applied(&self) -> AppliedControls {

@@ -58,7 +58,13 @@ impl State {
     pub(super) fn take_up(
         &self,
         steps: &mut StyledSteps,
-        (running, quick, leap_m, balance, led): (&Running, &Quick, Option<f32>, [f32; 2], &Led),
+        (running, quick, leap_m, (lean, balance), led): (
+            &Running,
+            &Quick,
+            Option<f32>,
+            (Lean, Vec2),
+            &Led,
+        ),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
@@ -122,8 +128,8 @@ impl State {
             velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
-                balance: balance.into(),
-                lean: quick.lean(),
+                balance,
+                lean,
                 ..feet.planter()
             }),
             tie: [0.0; TIE_LEN],
