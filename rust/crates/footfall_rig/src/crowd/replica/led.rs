@@ -35,11 +35,12 @@ const ON_THE_SPOT_RADPS: f32 = 0.06;
 /// Decay of the turn rate from one missing step to the next: turns are short.
 const TURNS_ON: f32 = 0.5;
 
+/// Error of the heading, radians, beyond which even a step that came too late turns the walk; below, it comes right with the first step in time.
+const LOST_RAD: f32 = 1.5;
+
 /// Error of the heading that one step cannot correct, radians; the walk then turns by this much more at most, rad/s, and slows down. Typical duration of a step, seconds.
 const ASTRAY_RAD: f32 = 0.6;
 const TURNS_BACK_RADPS: f32 = 1.3;
-/// The same error beyond which even a step that came too late turns the walk; below, it comes right with the first step in time.
-const LOST_RAD: f32 = 1.5;
 const STEP_SECS: f32 = 0.55;
 
 /// A received step, on our clock.
