@@ -49,6 +49,11 @@ impl Pose {
         self.rotations[joint.index()]
     }
 
+    /// Returns true when position and rotations are finite.
+    pub fn is_finite(&self) -> bool {
+        self.root_position.is_finite() && self.rotations.iter().all(|turn| turn.is_finite())
+    }
+
     /// The pose of the mirrored body: left and right change places in the plane x = 0.
     #[must_use]
     pub fn mirrored(&self) -> Self {

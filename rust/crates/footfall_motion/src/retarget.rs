@@ -240,10 +240,7 @@ fn embody(source: &SourceMotion) -> Result<Embodied, RetargetError> {
     };
     floor::put_on_floor(&mut clip, source.first_motion_frame);
     floor::lift_toes(&mut clip);
-    let is_finite = |pose: &Pose| {
-        pose.root_position.is_finite() && pose.rotations.iter().all(|turn| turn.is_finite())
-    };
-    match clip.poses.iter().position(|pose| !is_finite(pose)) {
+    match clip.poses.iter().position(|pose| !pose.is_finite()) {
         Some(frame) => Err(RetargetError::NotFinite { frame }),
         None => Ok(Embodied {
             clip,

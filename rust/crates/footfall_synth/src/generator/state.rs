@@ -27,19 +27,23 @@ use led::Led;
 use moving::Moving;
 use quick::Quick;
 use running::Running;
+use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
-/// Version of the layout that this build writes. It also reads earlier versions, whose legs do not lean against changes of speed, whose pending jumps go from the
-/// character, and which lack corrections of the way, climbs, balance, jumps and steps that change in their middle, running and standing motion.
+/// Version of the layout that this build writes, and the oldest that it reads.
 const VERSION: u8 = 12;
-const UPRIGHT_VERSION: u8 = 11;
-const SEEN_VERSION: u8 = 10;
-const UNLED_VERSION: u8 = 9;
-const LEVEL_VERSION: u8 = 8;
-const UNBALANCED_VERSION: u8 = 7;
-const RUNNING_VERSION: u8 = 6;
-const WALKING_VERSION: u8 = 5;
-const STILL_VERSION: u8 = 4;
+const OLDEST: u8 = 4;
+
+/// Versions from which states have standing motion, running, steps that change in their middle and jumps, balance, climbs, corrections of the way, pending jumps from
+/// the start of the walk rather than from the character, and legs that lean against changes of speed.
+const STANDING: u8 = 5;
+const RUNNING: u8 = 6;
+const MOVING: u8 = 7;
+const BALANCE: u8 = 8;
+const CLIMBING: u8 = 9;
+const LED: u8 = 10;
+const JUMPS_FROM_START: u8 = 11;
+const LEGS_LEAN: u8 = 12;
 
 /// Limit of all numbers of a state: metres, radians, frames and factors.
 const MAX_VALUE: f64 = 1e7;
@@ -126,8 +130,23 @@ enum Source {
     },
 }
 
-/// Further parts of a state: run, replanned step, crouch and jump, balance of the last landing, lean into a climb, displacement, and lean of the standing leg.
-type More = (Running, Quick, Moving, [f32; 2], Climbing, Led, f32);
+/// Parts that follow a [`State`], of which earlier versions have the first ones.
+struct Parts<'a> {
+    version: u8,
+    rest: &'a [u8],
+}
+
+impl Parts<'_> {
+    /// Reads the next part, which states have `since` this version; that of `earlier` ones is given.
+    fn next<T: DeserializeOwned>(&mut self, since: u8, earlier: T) -> postcard::Result<T> {
+        if self.version < since {
+            return Ok(earlier);
+        }
+        let (part, rest) = postcard::take_from_bytes(self.rest)?;
+        self.rest = rest;
+        Ok(part)
+    }
+}
 
 /// Progress of a walker's life, behind a [`State`].
 #[derive(Default, Serialize, Deserialize)]
@@ -224,51 +243,21 @@ impl GaitGenerator {
     /// [`StateError`]; the walker then continues as before.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), StateError> {
         let (state, rest): (State, _) = postcard::take_from_bytes(bytes)?;
-        let slow = Quick::of_slow(&state);
-        let (still, level) = (Moving::default(), Climbing::default());
-        let free = Led::default();
-        let (alive, more): (Alive, More) = match state.version {
-            VERSION => postcard::from_bytes(rest)?,
-            UPRIGHT_VERSION | SEEN_VERSION => {
-                let (alive, (running, quick, moving, balance, climbing, led)) =
-                    postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, balance, climbing, led, 0.0))
-            }
-            UNLED_VERSION => {
-                let (alive, (running, quick, moving, balance, climbing)) =
-                    postcard::from_bytes(rest)?;
-                (
-                    alive,
-                    (running, quick, moving, balance, climbing, free, 0.0),
-                )
-            }
-            LEVEL_VERSION => {
-                let (alive, (running, quick, moving, balance)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, balance, level, free, 0.0))
-            }
-            UNBALANCED_VERSION => {
-                let (alive, (running, quick, moving)) = postcard::from_bytes(rest)?;
-                (alive, (running, quick, moving, [0.0; 2], level, free, 0.0))
-            }
-            RUNNING_VERSION => {
-                let (alive, running) = postcard::from_bytes(rest)?;
-                (alive, (running, slow, still, [0.0; 2], level, free, 0.0))
-            }
-            WALKING_VERSION => {
-                let alive = postcard::from_bytes(rest)?;
-                (
-                    alive,
-                    (Running::default(), slow, still, [0.0; 2], level, free, 0.0),
-                )
-            }
-            STILL_VERSION => {
-                let running = Running::default();
-                let still = (running, slow, still, [0.0; 2], level, free, 0.0);
-                (Alive::default(), still)
-            }
-            other => return Err(StateError::Version(other)),
+        if !(OLDEST..=VERSION).contains(&state.version) {
+            return Err(StateError::Version(state.version));
+        }
+        let mut parts = Parts {
+            version: state.version,
+            rest,
         };
-        let (running, quick, moving, balance, climbing, led, leg) = more;
+        let alive: Alive = parts.next(STANDING, Alive::default())?;
+        let running: Running = parts.next(RUNNING, Running::default())?;
+        let quick = parts.next(MOVING, Quick::of_slow(&state))?;
+        let moving: Moving = parts.next(MOVING, Moving::default())?;
+        let balance: [f32; 2] = parts.next(BALANCE, [0.0; 2])?;
+        let climbing: Climbing = parts.next(CLIMBING, Climbing::default())?;
+        let led: Led = parts.next(LED, Led::default())?;
+        let leg: f32 = parts.next(LEGS_LEAN, 0.0)?;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -321,7 +310,7 @@ impl GaitGenerator {
         self.position = state.position.clamp(0.0, frames);
         climbing.resume(self);
         self.tell_place();
-        moving.resume(self, state.version < UPRIGHT_VERSION);
+        moving.resume(self, state.version < JUMPS_FROM_START);
         Ok(())
     }
 }
