@@ -107,9 +107,11 @@
 //!
 //! A [`Goal`] is a walker's own target, [`Drawn`] holds its places for drawing. One group of [`GROUPS`] of the distant walkers moves in each frame; a renderer that writes many
 //! poses fetches [`FETCHED`] of them together ([`Agent::fetch_pose`]). A crowd has at most [`MOST_AGENTS`]. [`CrowdStateError`] reports invalid bytes.
+//!
+//! A dropped crowd is freed on another thread. A plugin that its host can unload calls [`finish_disposals`] before.
 
 pub use footfall_rig::crowd::{
     Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,
-    Limits, MOST_AGENTS, Path, Roster, Routing, SavedCrowd, Tier,
+    Limits, MOST_AGENTS, Path, Roster, Routing, SavedCrowd, Tier, finish_disposals,
 };
 pub use footfall_synth::{CrowdPose, CrowdWalker, SharedPose, StyledBody, Workshop};

@@ -7,6 +7,7 @@ mod agent;
 mod avoidance;
 mod begin;
 mod decision;
+mod disposal;
 mod drawn;
 mod eyesight;
 mod goal;
@@ -24,6 +25,7 @@ mod steering;
 mod tiers;
 
 pub use agent::Agent;
+pub use disposal::finish_disposals;
 pub use drawn::Drawn;
 pub use eyesight::Eyesight;
 use footfall_core::{ModelPose, Pose, Skeleton};
@@ -212,6 +214,12 @@ impl Crowd {
     pub fn names(&self) -> impl Iterator<Item = i32> {
         let order = self.roster.order().iter();
         order.map(|place| self.roster.name(*place as usize))
+    }
+}
+
+impl Drop for Crowd {
+    fn drop(&mut self) {
+        disposal::dispose(core::mem::take(&mut self.agents));
     }
 }
 

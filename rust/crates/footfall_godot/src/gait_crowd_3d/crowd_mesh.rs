@@ -96,16 +96,19 @@ impl CrowdMesh {
         let mut begins: Vec<f32> = instances.iter().map(|(begin, _)| *begin).collect();
         begins.sort_by(f32::total_cmp);
         begins.dedup();
-        let levels = [begins[1.min(begins.len() - 1)], begins[begins.len() - 1]];
-        let meshes = levels.map(|level| {
+        let last = begins.len() - 1;
+        let mesh_of = |level: usize| {
             let mut mesh = ArrayMesh::new_gd();
             for (begin, instance) in &instances {
-                if (*begin - level).abs() < 1e-3 {
+                if (*begin - begins[level]).abs() < 1e-3 {
                     add_surfaces(&mut mesh, instance, &skeleton, &bones);
                 }
             }
             mesh
-        });
+        };
+        let far = mesh_of(last);
+        let near = if last > 1 { mesh_of(1) } else { far.clone() };
+        let meshes = [near, far];
         let t_pose = ModelPose::of(&binding.body, &Pose::rest(&binding.body));
         Ok(Self {
             stand_in: StandInMesh::of(&meshes[1], &t_pose.positions),

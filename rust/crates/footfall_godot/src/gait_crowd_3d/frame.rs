@@ -12,7 +12,15 @@ use godot::prelude::*;
 impl GaitCrowd3D {
     /// Advances the crowd; `waits` for pending walkers, or leaves them for a later frame.
     pub(super) fn advance_by(&mut self, dt_secs: f32, waits: bool) {
-        if !self.make() || !self.begin_walkers(waits) {
+        let is_new = self.walkers.is_none();
+        if !self.make() {
+            return;
+        }
+        // Reading the character took its share of this frame, and nobody can walk before other threads have prepared the styles.
+        if is_new && !waits {
+            return;
+        }
+        if !self.begin_walkers(waits) {
             return;
         }
         let limits = self.limits();

@@ -1,5 +1,6 @@
 //! Creation of walkers on separate threads, so that no frame waits for it. The order of creation does not change the walkers.
 
+use super::disposal;
 use super::mixtures::{CrowdRecipe, Mixtures, StyleMixture};
 use footfall_synth::{CrowdWalker, GeneratorConfig, StyledBody, SynthError, Workshop};
 use std::collections::VecDeque;
@@ -37,8 +38,6 @@ pub(super) struct Made {
 #[derive(Debug, Default)]
 struct Queue {
     orders: VecDeque<Order>,
-    /// Walkers that left: freeing ten thousand of them takes longer than a frame.
-    left: Vec<CrowdWalker>,
     /// Threads that will return here.
     working: usize,
 }
@@ -54,7 +53,7 @@ struct Shared {
     made: Mutex<VecDeque<Made>>,
 }
 
-/// The threads of one crowd. They end when there is nothing to do, and when this is dropped.
+/// The threads of one crowd. They end when there is nothing to do, and soon after this is dropped.
 #[derive(Debug)]
 pub(super) struct Maker {
     shared: Arc<Shared>,
@@ -122,19 +121,6 @@ impl Maker {
         }
     }
 
-    /// Frees walkers that left.
-    pub(super) fn forget(&mut self, left: Vec<CrowdWalker>) {
-        if left.len() <= FEW {
-            return;
-        }
-        locked(&self.shared.queue).left.extend(left);
-        self.hire(1);
-        let mut queue = locked(&self.shared.queue);
-        if queue.working == 0 {
-            queue.left.clear();
-        }
-    }
-
     /// Forgets all orders.
     pub(super) fn cancel(&mut self) {
         let left = core::mem::take(&mut locked(&self.shared.queue).orders);
@@ -197,8 +183,8 @@ impl Maker {
 impl Drop for Maker {
     fn drop(&mut self) {
         self.cancel();
-        // A library must not be unloaded while threads run in it; they end after the current walker.
-        self.join();
+        // They end after the current walker, or after the mixtures: longer than a frame.
+        disposal::leave_to_end(self.threads.drain(..));
     }
 }
 
@@ -217,12 +203,6 @@ impl Shared {
         let mut workshop = None;
         loop {
             let mut queue = locked(&self.queue);
-            let left = core::mem::take(&mut queue.left);
-            if !left.is_empty() {
-                drop(queue);
-                drop(left);
-                continue;
-            }
             let Some(order) = queue.orders.pop_front() else {
                 queue.working -= 1;
                 return;

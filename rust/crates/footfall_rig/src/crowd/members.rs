@@ -2,6 +2,7 @@
 
 use super::Crowd;
 use super::agent::{Agent, WHITE};
+use super::disposal;
 use super::drawn::Drawn;
 use super::goal::Goal;
 use super::maker::Order;
@@ -164,16 +165,18 @@ impl Crowd {
     /// Removes the walkers in these rows.
     pub fn leave(&mut self, places: &[usize]) {
         self.roster.leave(places);
-        let mut left = Vec::new();
+        let mut left = Vec::with_capacity(places.len());
         for place in places {
-            let agent = core::mem::replace(&mut self.agents[*place], Agent::absent());
-            left.extend(agent.walker);
+            left.push(core::mem::replace(
+                &mut self.agents[*place],
+                Agent::absent(),
+            ));
             self.tiers[*place] = Tier::Far;
             self.drawn[*place] = Drawn::default();
             self.stirs[*place] = Stir::default();
             self.seen[*place] = Passerby::NOWHERE;
         }
-        self.maker.forget(left);
+        disposal::dispose(left);
     }
 
     /// Removes all walkers; returns their rows.

@@ -7,6 +7,7 @@ mod goals;
 use footfall_model::GaitModel;
 use footfall_rig::crowd::{
     Crowd, CrowdRecipe, CrowdSettings, Limits, Passerby, Routing, SavedCrowd, Tier,
+    finish_disposals,
 };
 use glam::{Vec2, Vec3};
 use std::f32::consts::PI;
@@ -106,6 +107,26 @@ fn names_and_places_outlast_saving_and_others_who_leave() {
     let over = Vec3::new(12.0, 10.0, 0.0);
     let met = second.first_met(over, over.with_y(-1.0));
     assert_eq!(met, second.roster().place(names[4]));
+}
+
+#[test]
+fn dropped_crowds_are_freed_whole_even_while_they_are_made() {
+    for is_made in [true, false] {
+        let model = Arc::new(GaitModel::clone(&MODEL));
+        let recipe = CrowdRecipe {
+            model: Arc::clone(&model),
+            ..recipe()
+        };
+        let mut crowd = Crowd::new(recipe, Routing::Scripted, CrowdSettings::default());
+        crowd.set_count(100);
+        if is_made {
+            walk(&mut crowd, DT_SECS, |_| {});
+        }
+        assert!(Arc::strong_count(&model) > 1);
+        drop(crowd);
+        finish_disposals();
+        assert_eq!(Arc::strong_count(&model), 1);
+    }
 }
 
 /// Seconds for which two of eight walkers touch, of two rows that pass through each other.
