@@ -102,13 +102,15 @@
 //! crowd.clear();
 //! crowd.restore(&saved);
 //! assert_eq!(crowd.names().collect::<Vec<_>>(), names);
+//!
+//! // Another thread frees a dropped crowd. A plugin waits for that before its host unloads it.
+//! drop(crowd);
+//! footfall::crowd::finish_disposals();
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
 //! A [`Goal`] is a walker's own target, [`Drawn`] holds its places for drawing. One group of [`GROUPS`] of the distant walkers moves in each frame; a renderer that writes many
 //! poses fetches [`FETCHED`] of them together ([`Agent::fetch_pose`]). A crowd has at most [`MOST_AGENTS`]. [`CrowdStateError`] reports invalid bytes.
-//!
-//! A dropped crowd is freed on another thread. A plugin that its host can unload calls [`finish_disposals`] before.
 
 pub use footfall_rig::crowd::{
     Agent, Crowd, CrowdRecipe, CrowdSettings, CrowdStateError, Drawn, FETCHED, GROUPS, Goal,

@@ -1,6 +1,6 @@
 //! Jumps off both feet: from standing, through a load and a flight, to standing again.
 
-use footfall_core::rotation::{heading, wrap_angle};
+use footfall_core::rotation::{from_heading, heading, wrap_angle};
 use footfall_core::{Clip, Joint, ModelPose, Pose, Side, forward_kinematics};
 use glam::Vec3;
 
@@ -22,15 +22,20 @@ const STANDING_SHARE: f32 = 0.88;
 const PUSHING_MPS: f32 = 0.1;
 /// Hips of a standing person go no faster over the ground, m/s.
 const STANDING_MPS: f32 = 0.4;
+/// Trunks of standing people lean forwards less than this, radians, and of those who begin to jump no further beyond their most upright posture.
+const STOOPED_RAD: f32 = 0.15;
+const LEANING_RAD: f32 = 0.05;
+/// Trunk and arms begin so much earlier than the hips at most, seconds.
+const EARLIER_SECS: f64 = 0.8;
 /// Least rise of the hips above standing, as a share of their height in the T-pose: feet that are drawn up are no jump.
 const LEAST_RISE_SHARE: f32 = 0.08;
-/// Largest turn within a jump, radians: farther turns make another kind of jump.
-const MOST_TURN_RAD: f32 = 0.5;
+/// Largest turn within a jump, radians: farther turns make another kind of jump, in which trunk and arms turn first.
+const MOST_TURN_RAD: f32 = 1.9;
 
 /// One jump, in frames of its clip.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Jump {
-    /// The last frame of standing before it.
+    /// The last frame of standing before it: upright, with the hips high.
     pub begin: usize,
     /// The last frame before the hips go up to take off.
     pub push: usize,
@@ -44,7 +49,7 @@ pub struct Jump {
     pub end: usize,
 }
 
-/// The jumps off both feet in a clip, without its first frames: those that begin and end standing and do not turn.
+/// The jumps off both feet in a clip, without its first frames: those that begin upright, end standing and do not turn far.
 pub fn two_footed_jumps(clip: &Clip, skip_frames: usize) -> Vec<Jump> {
     let poses = clip.poses.get(skip_frames..).unwrap_or_default();
     if poses.is_empty() {
@@ -139,8 +144,30 @@ impl Body<'_> {
         let lowest = self.lowest(first..=take_off)?;
         let standing = (first..=lowest).map(|frame| self.height(frame));
         let left = self.left_standing(standing)?;
-        let begin = (first..=lowest).rev().find(|f| self.height(*f) > left)?;
+        let sinks = (first..=lowest).rev().find(|f| self.height(*f) > left)?;
+        let begin = self.upright_before(sinks)?;
         self.is_slow(begin).then_some(begin)
+    }
+
+    /// The last frame up to this one in which the trunk is upright: it and the arms begin a jump before the hips sink.
+    fn upright_before(&self, sinks: usize) -> Option<usize> {
+        let earlier = (EARLIER_SECS * self.clip.frame_rate_hz) as usize;
+        let first = sinks.saturating_sub(earlier);
+        let leans: Vec<f32> = (first..=sinks).map(|frame| self.lean(frame)).collect();
+        let upright = leans.iter().copied().fold(f32::INFINITY, f32::min);
+        let within = leans
+            .iter()
+            .rposition(|lean| *lean < upright + LEANING_RAD)?;
+        (upright < STOOPED_RAD).then_some(first + within)
+    }
+
+    /// Angle by which the trunk leans forwards, radians.
+    fn lean(&self, frame: usize) -> f32 {
+        let pose = &self.poses[frame];
+        let body = ModelPose::of(&self.clip.skeleton, pose);
+        let trunk = body.position(Joint::Neck) - body.position(Joint::Hips);
+        let ahead = from_heading(heading(pose.rotation(Joint::Hips))) * Vec3::Z;
+        trunk.dot(ahead).atan2(trunk.y)
     }
 
     /// The last frame before a take-off in which the hips do not go up yet.
@@ -207,7 +234,7 @@ impl Body<'_> {
         let faces = |pose: &Pose| heading(pose.rotation(Joint::Hips));
         let turn = wrap_angle(faces(to) - faces(from));
         let way = to.root_position - from.root_position;
-        let ahead = footfall_core::rotation::from_heading(faces(from)) * Vec3::Z;
+        let ahead = from_heading(faces(from)) * Vec3::Z;
         let aside = (way.with_y(0.0) - way.dot(ahead) * ahead).length();
         turn.abs() < MOST_TURN_RAD && aside < 0.2 + 0.3 * way.dot(ahead).abs()
     }
@@ -281,6 +308,30 @@ mod tests {
         assert!(near(jump.take_off, 96), "{jump:?}");
         assert!(near(jump.landing, 124), "{jump:?}");
         assert!(near(jump.end, 161), "{jump:?}");
+    }
+
+    /// Leans the trunk of a clip forwards by this angle between two frames, and as far for the rest of the load.
+    fn lean(clip: &mut Clip, from: usize, to: usize, angle: f32) {
+        for (frame, pose) in clip.poses.iter_mut().enumerate().take(90) {
+            let share = (frame as f32 - from as f32) / (to - from) as f32;
+            pose.rotations[Joint::Spine.index()] =
+                Quat::from_rotation_x(angle * share.clamp(0.0, 1.0));
+        }
+    }
+
+    #[test]
+    fn a_jump_begins_with_the_trunk_and_out_of_an_upright_one_only() {
+        let mut leaning = clip(&heights(0.5), [true; 2]);
+        lean(&mut leaning, 30, 70, 0.8);
+        let jumps = two_footed_jumps(&leaning, 0);
+        let [jump] = jumps[..] else {
+            panic!("{jumps:?}");
+        };
+        assert!(jump.begin.abs_diff(33) <= 3, "{jump:?}");
+        let mut stooped = clip(&heights(0.5), [true; 2]);
+        lean(&mut stooped, 0, 1, 0.8);
+        stooped.poses[0] = stooped.poses[1].clone();
+        assert!(two_footed_jumps(&stooped, 0).is_empty());
     }
 
     #[test]

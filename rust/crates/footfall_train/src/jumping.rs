@@ -29,6 +29,8 @@ pub struct LearnedJumping {
 
 /// One recorded jump.
 struct Sample {
+    /// Weight: jumps of one recording share that of one jump, for they are the manner of one person.
+    weight: f64,
     rise: f64,
     way: f64,
     /// Durations of the phases, seconds.
@@ -43,7 +45,10 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
         .iter()
         .flat_map(|(clip, skip)| {
             let jumps = two_footed_jumps(clip, *skip);
-            jumps.into_iter().map(|jump| Sample::new(clip, &jump))
+            let weight = 1.0 / jumps.len() as f64;
+            jumps
+                .into_iter()
+                .map(move |jump| Sample::new(clip, &jump, weight))
         })
         .collect();
     if samples.len() < LEAST_JUMPS {
@@ -53,8 +58,7 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
         let values = || samples.iter().map(value);
         let least = values().fold(f64::INFINITY, f64::min);
         let most = values().fold(f64::NEG_INFINITY, f64::max);
-        let mean = values().sum::<f64>() / samples.len() as f64;
-        [least, mean, most]
+        [least, mean(&samples, value), most]
     };
     let (rise, way) = (range(|sample| sample.rise), range(|sample| sample.way));
     let regression = Regression::new(&samples, rise[1], way[1]);
@@ -76,7 +80,7 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
 }
 
 impl Sample {
-    fn new(clip: &Clip, jump: &Jump) -> Self {
+    fn new(clip: &Clip, jump: &Jump, weight: f64) -> Self {
         let leg = clip.skeleton.mean_leg_length();
         let posture = |time: f64| {
             let pose = clip.pose_at(time).unwrap_or_default();
@@ -113,6 +117,7 @@ impl Sample {
         let faced = rotation::heading(clip.poses[jump.begin].rotation(Joint::Hips));
         let way = (hips(jump.end) - hips(jump.begin)).dot(from_heading(faced) * Vec3::Z);
         Self {
+            weight,
             rise: f64::from((apex - hips(jump.begin).y) / leg),
             way: f64::from(way / leg),
             secs: core::array::from_fn(|phase| times[phase + 1] - times[phase]),
@@ -121,7 +126,14 @@ impl Sample {
     }
 }
 
-/// Least squares on rise and way, with a ridge.
+/// Weighted mean of a value.
+fn mean(samples: &[Sample], value: impl Fn(&Sample) -> f64) -> f64 {
+    let weights = samples.iter().map(|sample| sample.weight).sum::<f64>();
+    let values = samples.iter().map(|sample| sample.weight * value(sample));
+    values.sum::<f64>() / weights
+}
+
+/// Weighted least squares on rise and way, with a ridge.
 struct Regression<'a> {
     samples: &'a [Sample],
     /// Deviations from the means.
@@ -135,22 +147,21 @@ impl<'a> Regression<'a> {
     fn new(samples: &'a [Sample], rise: f64, way: f64) -> Self {
         let rises: Vec<f64> = samples.iter().map(|sample| sample.rise - rise).collect();
         let ways: Vec<f64> = samples.iter().map(|sample| sample.way - way).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let products = [dot(&rises, &rises), dot(&rises, &ways), dot(&ways, &ways)];
+        let products = [(&rises, &rises), (&rises, &ways), (&ways, &ways)];
         Self {
+            products: products.map(|(a, b)| product(samples, a, b)),
             samples,
             rises,
             ways,
-            products,
         }
     }
 
     /// Mean and slopes of a value.
     fn fit(&self, value: impl Fn(&Sample) -> f64) -> [f64; JUMP_RESPONSES] {
-        let values: Vec<f64> = self.samples.iter().map(value).collect();
-        let mean = values.iter().sum::<f64>() / values.len() as f64;
-        let dot = |a: &[f64]| a.iter().zip(&values).map(|(a, v)| a * (v - mean)).sum();
-        let (by_rise, by_way): (f64, f64) = (dot(&self.rises), dot(&self.ways));
+        let mean = mean(self.samples, &value);
+        let deviations: Vec<f64> = self.samples.iter().map(|s| value(s) - mean).collect();
+        let by = |deviating: &[f64]| product(self.samples, deviating, &deviations);
+        let (by_rise, by_way) = (by(&self.rises), by(&self.ways));
         let [rise, both, way] = self.products;
         let (rise, way) = ((1.0 + RIDGE) * rise, (1.0 + RIDGE) * way);
         let determinant = rise * way - both * both;
@@ -162,5 +173,53 @@ impl<'a> Regression<'a> {
             (way * by_rise - both * by_way) / determinant,
             (rise * by_way - both * by_rise) / determinant,
         ]
+    }
+}
+
+/// Weighted sum of the products of two values of each sample.
+fn product(samples: &[Sample], a: &[f64], b: &[f64]) -> f64 {
+    let pairs = a.iter().zip(b).zip(samples);
+    pairs.map(|((a, b), sample)| sample.weight * a * b).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample(rise: f64, way: f64, secs: f64, weight: f64) -> Sample {
+        Sample {
+            weight,
+            rise,
+            way,
+            secs: [secs; JUMP_PHASES],
+            knots: core::array::from_fn(|_| Vec::new()),
+        }
+    }
+
+    fn fit(samples: &[Sample]) -> [f64; JUMP_RESPONSES] {
+        let rise = mean(samples, |sample| sample.rise);
+        let way = mean(samples, |sample| sample.way);
+        Regression::new(samples, rise, way).fit(|sample| sample.secs[0])
+    }
+
+    #[test]
+    fn a_weight_of_two_is_a_sample_that_occurs_twice() {
+        let rows = [
+            (0.2, 0.0, 0.5),
+            (0.3, 1.0, 0.7),
+            (0.5, 0.4, 0.4),
+            (0.4, 1.2, 0.9),
+        ];
+        let heavy = |(at, (rise, way, secs)): (usize, (f64, f64, f64))| {
+            sample(rise, way, secs, if at == 1 { 2.0 } else { 1.0 })
+        };
+        let weighted: Vec<Sample> = rows.into_iter().enumerate().map(heavy).collect();
+        let repeated: Vec<Sample> = [0, 1, 1, 2, 3]
+            .map(|at: usize| rows[at])
+            .map(|(rise, way, secs)| sample(rise, way, secs, 1.0))
+            .into();
+        for (weighted, repeated) in fit(&weighted).into_iter().zip(fit(&repeated)) {
+            assert!((weighted - repeated).abs() < 1e-12, "{weighted} {repeated}");
+        }
     }
 }

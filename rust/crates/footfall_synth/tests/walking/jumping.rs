@@ -127,6 +127,40 @@ fn a_jump_is_one_movement_down_and_up() {
     }
 }
 
+/// Returns how far the hands are ahead of the shoulders of a walker who faces +Z, metres.
+fn reach(frame: &Frame) -> f32 {
+    let ahead = |joint: Joint| frame.model.position(joint).z;
+    let hands = ahead(Joint::LeftHand) + ahead(Joint::RightHand);
+    0.5 * (hands - ahead(Joint::LeftUpperArm) - ahead(Joint::RightUpperArm))
+}
+
+#[test]
+fn arms_swing_back_in_the_dip_and_up_with_the_push_and_further_in_high_jumps() {
+    let skeleton = Skeleton::standard();
+    let swings = [0.15, 0.35].map(|asked| {
+        let mut generator = stander(3);
+        let (mut frames, _) = run(&mut generator, &skeleton, &Controls::STAND, 2);
+        generator.jump(asked);
+        frames.extend(run(&mut generator, &skeleton, &Controls::STAND, 60).0);
+        let takes_off = frames.iter().position(|frame| frame.contact == [false; 2]);
+        let load = &frames[..takes_off.expect("the walker leaves the ground")];
+        let reaches: Vec<f32> = load.iter().map(reach).collect();
+        let back = (0..reaches.len()).min_by(|a, b| reaches[*a].total_cmp(&reaches[*b]));
+        let back = back.expect("the load has frames");
+        // Hands are behind before the hips are lowest, and ahead as the feet leave the ground.
+        let lowest = (0..load.len()).min_by(|a, b| hips(&load[*a]).total_cmp(&hips(&load[*b])));
+        assert!(Some(back) < lowest, "{back} {lowest:?}");
+        let last = reaches.last().expect("the load has frames");
+        [reaches[0] - reaches[back], last - reaches[back]]
+    });
+    let [low, high] = swings;
+    assert!(high[0] > 0.2 && high[1] > 0.5, "{high:?} m");
+    assert!(
+        low[0] < 0.7 * high[0] && low[1] < 0.7 * high[1],
+        "{low:?} of {high:?} m"
+    );
+}
+
 #[test]
 fn phases_follow_each_other_and_feet_bear_but_in_the_flight() {
     let mut generator = stander(5);

@@ -1,19 +1,12 @@
 //! Course of the hips in a jump: that of the legs before and after, and a parabola in between.
 
-use super::tables::bulging;
+use super::tables::{LEAST_SECS, bulging};
 use super::{ABSORPTION, DIP, FLIGHT, JumpTables, Leap, PUSH, RECOVERY, Timing};
 use crate::gait::GRAVITY_MPS2;
 use crate::moves::body::{Beside, Body};
 use footfall_core::ease::{hermite, smooth_step};
 use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
 use glam::Vec3;
-
-/// Durations of dip and recovery, seconds: recorded ones are slow, players are impatient.
-const DIP_SECS: [f32; 2] = [0.15, 0.32];
-const RECOVERY_SECS: [f32; 2] = [0.25, 0.5];
-
-/// Minimum durations of push-off and absorption, seconds.
-const LEAST_SECS: f32 = 0.08;
 
 /// Bounds of the rise of a jump, leg lengths: less is no jump, more is beyond people.
 const RISES: [f32; 2] = [0.03, 0.8];
@@ -36,8 +29,12 @@ const DEEPEST_SINK: f32 = 0.3;
 /// Time before take-off at which the character begins to move, and after landing at which it arrives, seconds.
 const SHIFT_SECS: f32 = 0.12;
 
-/// Greatest downward acceleration of the hips as the dip begins, m/s²: near free fall feet would leave the ground.
-const DROP_MPS2: f32 = 0.8 * GRAVITY_MPS2;
+/// Range of the downward acceleration of the hips as the dip begins, m/s²: near free fall feet would leave the ground, and people begin with
+/// their arms, for which players do not wait.
+const DROP_MPS2: [f32; 2] = [0.5 * GRAVITY_MPS2, 0.8 * GRAVITY_MPS2];
+
+/// Greatest deceleration of the hips as the recovery ends, m/s²: knees straighten suddenly where it is high.
+const SETTLE_MPS2: f32 = 1.5;
 
 /// Part of a phase for numerical slopes.
 const SLOPE_PART: f32 = 0.02;
@@ -56,8 +53,10 @@ pub(crate) struct Course {
     missing: [[Vec3; 2]; 2],
     /// Height of the hips between dip and push-off, which raises them evenly, metres.
     bottom: f32,
-    /// Delay of the dip as a bulge of the hips' height, so that the body does not fall faster than it can, metres.
+    /// Delay of the dip as a bulge of the hips' height, so that the body neither falls faster than it can nor waits, metres.
     delay: f32,
+    /// Lead of the recovery as a bulge of the hips' way, so that they come to rest gently, metres.
+    lead: Vec3,
     /// Extra depth of the absorption beyond that of recorded jumps, metres.
     sink: f32,
     leg: f32,
@@ -71,13 +70,11 @@ impl Course {
         let rise = (leap.rise_m / leg).clamp(RISES[0], RISES[1]);
         let over_ground = within_reach(leap.way.with_y(0.0), leg);
         let mut timing = tables.timing(rise, over_ground.z / leg);
-        let slope = |phase: usize, from: f32| {
-            let at = |s: f32| leg * hips_of(&tables.beside(phase, s, &timing));
-            (at(from + SLOPE_PART) - at(from)) / SLOPE_PART
-        };
-        let least = -DROP_MPS2 * timing.secs[DIP] * timing.secs[DIP];
+        let slope = |phase: usize, from: f32| leg * tables.slope(phase, from, &timing);
+        let [most, least] = DROP_MPS2.map(|drop| -0.5 * drop * timing.secs[DIP] * timing.secs[DIP]);
         // The dip begins at rest; a bulge has a second derivative of two there.
-        let delay = (0.5 * least - slope(DIP, 0.0).y / SLOPE_PART).max(0.0);
+        let sinking = slope(DIP, 0.0).y / SLOPE_PART;
+        let delay = sinking.clamp(least, most) - sinking;
         let own_slopes = [slope(PUSH, 1.0 - SLOPE_PART), slope(ABSORPTION, 0.0)];
         let postures =
             [(PUSH, 1.0), (ABSORPTION, 0.0)].map(|(phase, s)| tables.beside(phase, s, &timing));
@@ -101,6 +98,12 @@ impl Course {
         let sink = (SINK_SECS * (fall - USUAL_FALL_MPS)).clamp(0.0, DEEPEST_SINK * leg);
         let even_secs = 2.0 * (ends[1].y - lowest + sink) / fall;
         timing.secs[ABSORPTION] = timing.secs[ABSORPTION].max(ABSORPTION_SHARE * even_secs);
+        let most = 0.5 * SETTLE_MPS2 * timing.secs[RECOVERY] * timing.secs[RECOVERY];
+        let rest = leg * tables.slope(RECOVERY, 1.0 - SLOPE_PART, &timing) / SLOPE_PART;
+        // What is left of the sink comes to rest with six times its second derivative.
+        let settling = rest + 3.0 * sink * Vec3::Y;
+        let lead =
+            settling - settling.clamp(Vec3::new(0.0, 0.0, -most), Vec3::new(0.0, most, most));
         let way = over_ground.with_y(up);
         let drift = (way + ends[1] - ends[0]) / timing.secs[FLIGHT];
         let speeds = [push, -fall].map(|rise| drift.with_y(rise));
@@ -119,6 +122,7 @@ impl Course {
             missing,
             bottom,
             delay,
+            lead,
             sink,
             leg,
         }
@@ -145,7 +149,10 @@ impl Course {
                 let lowest = -self.sink * Vec3::Y;
                 self.way + own + hermite(on, speed_on, lowest, none, s)
             }
-            _ => self.way + own - self.sink * (1.0 - smooth_step(s)) * Vec3::Y,
+            _ => {
+                let sunk = self.sink * (1.0 - smooth_step(s)) * Vec3::Y;
+                self.way + own + self.lead * bulging(s) - sunk
+            }
         }
     }
 
@@ -189,19 +196,18 @@ impl JumpTables {
     /// Returns the timing of a jump of this rise and way, in leg lengths; that of its flight follows later.
     fn timing(&self, rise: f32, way: f32) -> Timing {
         let factors = self.factors(rise, way);
-        let secs = core::array::from_fn(|phase| {
-            let secs = self.secs(phase, factors);
-            match phase {
-                DIP => secs.clamp(DIP_SECS[0], DIP_SECS[1]),
-                RECOVERY => secs.clamp(RECOVERY_SECS[0], RECOVERY_SECS[1]),
-                _ => secs.max(LEAST_SECS),
-            }
-        });
+        let secs = core::array::from_fn(|phase| self.secs(phase, factors));
         Timing {
             factors,
             scale: (rise / self.rise[0]).min(1.0),
             secs,
         }
+    }
+
+    /// Returns the rate of the hips' displacement over a small part of a phase, leg lengths a phase.
+    fn slope(&self, phase: usize, from: f32, timing: &Timing) -> Vec3 {
+        let at = |s: f32| hips_of(&self.beside(phase, s, timing));
+        (at(from + SLOPE_PART) - at(from)) / SLOPE_PART
     }
 }
 

@@ -10,6 +10,13 @@ use footfall_core::Pose;
 use footfall_core::ease::hermite;
 use footfall_model::{BESIDE_COUNT, JUMP_PHASES, JUMP_RESPONSES, JumpModel, layout};
 
+/// Durations of dip and recovery, seconds: recorded ones are slow, players are impatient.
+const DIP_SECS: [f32; 2] = [0.15, 0.32];
+const RECOVERY_SECS: [f32; 2] = [0.42, 0.5];
+
+/// Minimum durations of push-off and absorption, seconds.
+pub(super) const LEAST_SECS: f32 = 0.08;
+
 /// Jumps of a model, prepared.
 #[derive(Clone, Debug)]
 pub(crate) struct JumpTables {
@@ -69,7 +76,12 @@ impl JumpTables {
 
     /// Returns the duration of a phase, seconds.
     pub(super) fn secs(&self, phase: usize, factors: [f32; JUMP_RESPONSES]) -> f32 {
-        sum(&self.secs[phase], factors)
+        let secs = sum(&self.secs[phase], factors);
+        match phase {
+            DIP => secs.clamp(DIP_SECS[0], DIP_SECS[1]),
+            RECOVERY => secs.clamp(RECOVERY_SECS[0], RECOVERY_SECS[1]),
+            _ => secs.max(LEAST_SECS),
+        }
     }
 
     /// Returns a value of a knot's posture.
@@ -144,9 +156,10 @@ impl JumpTables {
         sign * (once - 0.5 * bend) / spacing
     }
 
-    /// Fits the bulges of dip or recovery to the knots, by least squares.
+    /// Fits the bulges of dip or recovery to the knots, by least squares. The course between the ends depends on the pace, so it is that of the jump, not
+    /// that of the recordings.
     fn fit_bulges(&self, phase: usize) -> [Beside; JUMP_RESPONSES] {
-        let secs = self.secs.each_ref().map(|responses| responses[0]);
+        let secs = core::array::from_fn(|phase| self.secs(phase, [1.0, 0.0, 0.0]));
         let (begin, count) = (
             self.begins[phase],
             self.begins[phase + 1] - self.begins[phase],
