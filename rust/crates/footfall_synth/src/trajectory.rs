@@ -1,8 +1,9 @@
 //! Trajectories: from plans to smooth features, joints and fine detail.
 //!
-//! Maximum-likelihood parameter generation with the corpus' global variance preserved ([`variance`]); [`fine_motion`] then adds the detail that states average away.
+//! Maximum-likelihood parameter generation with the corpus' global variance preserved ([`variance`]); [`fine_motion`] then adds the detail that states average away, and [`leap`] the posture of a leap.
 
 mod fine_motion;
+mod leap;
 pub(crate) mod variance;
 
 use crate::error::SynthError;
@@ -10,6 +11,7 @@ use crate::plan::{Statistics, StepPlan};
 pub(crate) use fine_motion::{FineBuffers, FineTables, Scale, neighbours};
 use footfall_model::{FEATURE_COUNT, OBSERVATION_COUNT, STATES_PER_STEP};
 use footfall_prob::mlpg::{MlpgProblem, MlpgWorkspace, Pull, Real, mlpg_part};
+pub(crate) use leap::add_leap;
 
 /// Solver of trajectories, with all of its buffers.
 #[derive(Debug)]

@@ -6,6 +6,7 @@
 mod climbing;
 mod jumping;
 mod leaning;
+mod leaping;
 mod quick;
 mod run_response;
 mod run_up;

@@ -7,7 +7,7 @@ use crate::ground::{Displacement, Placing};
 use crate::plan::{Planner, Remainder, StepPlan, TIE, WINDOW};
 use crate::source::buffers::{Change, StepBuffers};
 use crate::source::style_space::Blend;
-use crate::trajectory::{Scale, neighbours};
+use crate::trajectory::{Scale, add_leap, neighbours};
 use footfall_core::StepPosition;
 use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
@@ -140,6 +140,9 @@ impl StepWindow {
                 let phase = Remainder::phase(remainder, frame as f32 / shape.timing.frames as f32);
                 fine.add(phase, scales, row);
             }
+        }
+        if let Some(rise_m) = self.origin.request.leap_m.filter(|_| step == 1) {
+            add_leap(shown, &shape.timing, rise_m);
         }
         self.planted
             .put(shown.chunks_exact(FEATURE_COUNT), &placing, generated);
