@@ -1,23 +1,25 @@
-//! Hips over the course, feet on the ground, and legs between them.
+//! Hips over the course ([`hips`]), feet on the ground, and legs between them.
 
-use crate::chance::{drift, normal};
+mod hips;
+
+use crate::chance::normal;
 use crate::course::Course;
-use crate::curve::{smoothed, stance_wave};
 use crate::sheet::StyleSheet;
 use crate::timeline::Timeline;
 use core::f32::consts::PI;
 use footfall_core::ease::{hermite, smooth_step};
+use footfall_core::lanes::{Vec3x8, f32x8};
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use footfall_core::{Clip, FrameSpan, Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
 use footfall_ik::{
-    FootTarget, Plant, RockerFoot, foot_heading, foot_pitch, reach_height, settled_pitch, solve_leg,
+    FootTarget, Plant, RockerFoot, foot_heading, foot_pitch, settled_pitch, solve_leg,
 };
 use glam::Vec3;
+use hips::MOST_STRETCH;
 
-/// A standing leg is stretched to this share of its length at most.
-const MOST_STRETCH: f32 = 0.992;
-/// The hips give way to a leg that is too short this long before and after, seconds.
-const REACH_AHEAD_SECS: f64 = 0.1;
+/// Part of a stance in which a heel begins to rise for a leg that is too short, and from which it does wholly; the most that it rises, radians.
+const LATE: [f32; 2] = [0.45, 0.65];
+const MOST_RAISED: f32 = 0.4;
 /// Least clearance of the sole in the middle of a swing, metres.
 const CLEARANCE_M: f32 = 0.012;
 /// Feet cross over the course's middle by this much at most, metres.
@@ -39,7 +41,17 @@ impl Ground<'_> {
     pub(crate) fn place(&self, poses: &mut [Pose]) {
         self.place_hips(poses);
         let models = models_of(&self.captured.skeleton, &self.captured.poses);
-        let feet = Side::BOTH.map(|side| self.foot_targets(side, &models));
+        let soles = Side::BOTH.map(|side| RockerFoot::new(&self.captured.skeleton, side));
+        let free = Side::BOTH.map(|side| self.free_targets(side, &models));
+        let mut feet = free.clone();
+        let plants = Side::BOTH
+            .map(|side| self.stand(side, &soles[side.index()], &models, &mut feet[side.index()]));
+        self.follow_feet(poses, &models, &soles);
+        for side in Side::BOTH {
+            let index = side.index();
+            self.raise_heels(side, &soles[index], &plants[index], poses, &mut feet[index]);
+            self.swing_through(side, &soles[index], &free[index], &mut feet[index]);
+        }
         self.give_way(poses, &feet);
         let mut model = ModelPose::default();
         for (frame, pose) in poses.iter_mut().enumerate() {
@@ -56,66 +68,81 @@ impl Ground<'_> {
         frame as f32 / self.captured.frame_rate_hz as f32
     }
 
-    fn place_hips(&self, poses: &mut [Pose]) {
-        let pelvis = &self.sheet.pelvis;
-        let heights: Vec<f32> = self
-            .captured
-            .poses
-            .iter()
-            .map(|pose| pose.root_position.y)
-            .collect();
-        let level = smoothed(&heights, 0.4 * self.timeline.stride_frames);
-        let squares = heights.iter().zip(&level).map(|(y, m)| (y - m).powi(2));
-        // Of a sine of this deviation, the height over its mean.
-        let top = (2.0 * squares.sum::<f32>() / heights.len() as f32).sqrt();
-        for (frame, pose) in poses.iter_mut().enumerate() {
-            let stretch = self.new.stretch[frame];
-            let wave = stance_wave(self.timeline.phase[frame]);
-            let mut place = self
-                .old
-                .relative(frame, self.captured.poses[frame].root_position);
-            let weave = drift(self.seed, 5, self.secs(frame) / self.sheet.irregular.period);
-            place.x = place.x * pelvis.sway / 100.0
-                + 0.01 * pelvis.sway_more * wave
-                + 0.001 * self.sheet.irregular.trunk * weave;
-            place.z *= stretch;
-            // Legs as long as ever: the hips' highest place stays, and short steps dip less below it.
-            let bounce = pelvis.bounce / 100.0 * (stretch * stretch).clamp(0.3, 1.3);
-            place.y = level[frame] + top + bounce * (heights[frame] - level[frame] - top);
-            place.y += 0.01 * pelvis.height;
-            for side in Side::BOTH {
-                let carries = (wave * side.sign()).max(0.0);
-                place.y -= 0.01 * self.sheet.sides[side.index()].drop * carries * carries;
-            }
-            pose.root_position = self.new.point(frame, place);
-        }
+    /// Returns the free foot, as the course carries it, in every frame; stances and swings replace it.
+    fn free_targets(&self, side: Side, models: &[ModelPose]) -> Vec<FootTarget> {
+        let stances = &self.timeline.stances[side.index()];
+        (0..models.len())
+            .map(|frame| self.free(side, frame, models, progress(stances, frame)))
+            .collect()
     }
 
-    /// Returns the target of one foot in every frame.
-    fn foot_targets(&self, side: Side, models: &[ModelPose]) -> Vec<FootTarget> {
-        let foot = RockerFoot::new(&self.captured.skeleton, side);
+    /// Stands a foot on the ground in its stances; returns its plants.
+    fn stand(
+        &self,
+        side: Side,
+        foot: &RockerFoot,
+        models: &[ModelPose],
+        targets: &mut [FootTarget],
+    ) -> Vec<Plant> {
         let stances = &self.timeline.stances[side.index()];
-        let frames = models.len();
-        // The free foot, as the course carries it, for the whole clip; stances replace it.
-        let mut targets: Vec<FootTarget> = (0..frames)
-            .map(|frame| self.free(side, frame, models, progress(stances, frame)))
-            .collect();
-        let free = targets.clone();
-        for (index, span) in stances.iter().enumerate() {
-            let plant = self.plant(side, &foot, *span, index, models);
+        let stand = |(index, span): (usize, &FrameSpan)| {
+            let plant = self.plant(side, foot, *span, index, models);
             for frame in span.first..=span.last {
                 let pitch = settled_pitch(foot_pitch(models[frame].rotation(side.foot())));
                 let pitch = self.styled_pitch(pitch, progress(stances, frame));
                 targets[frame] = foot.stand(&plant, pitch);
             }
+            plant
+        };
+        stances.iter().enumerate().map(stand).collect()
+    }
+
+    /// Raises the heel late in a stance as far as the leg needs to reach its foot: people give way to a long step there, not with their hips.
+    fn raise_heels(
+        &self,
+        side: Side,
+        foot: &RockerFoot,
+        plants: &[Plant],
+        poses: &[Pose],
+        targets: &mut [FootTarget],
+    ) {
+        let skeleton = &self.captured.skeleton;
+        let reach = f32x8::splat(MOST_STRETCH * skeleton.leg_length(side));
+        for (span, plant) in self.timeline.stances[side.index()].iter().zip(plants) {
+            for frame in span.first..=span.last {
+                let pose = &poses[frame];
+                let hip = pose.root_position
+                    + pose.rotation(Joint::Hips) * skeleton.offset(side.upper_leg());
+                let from_plant = from_heading(-plant.heading) * (hip - plant.flat_ankle);
+                let pitch = foot_pitch(targets[frame].foot);
+                let least = f32x8::splat(pitch.max(0.0));
+                let from_plant = Vec3x8::splat(from_plant);
+                let reaching = foot
+                    .pitches_within_reach(from_plant, reach, least)
+                    .as_array()[0];
+                let passed = (frame - span.first) as f32 / (0.6 * self.timeline.stride_frames);
+                let late = smooth_step((passed - LATE[0]) / (LATE[1] - LATE[0]));
+                let raised = pitch + late * (reaching - pitch).clamp(0.0, MOST_RAISED);
+                targets[frame] = foot.stand(plant, raised);
+            }
         }
+    }
+
+    /// Leads a foot from each stance to the next.
+    fn swing_through(
+        &self,
+        side: Side,
+        foot: &RockerFoot,
+        free: &[FootTarget],
+        targets: &mut [FootTarget],
+    ) {
         let mut ends = vec![None];
-        ends.extend(stances.iter().copied().map(Some));
+        let stances = self.timeline.stances[side.index()].iter();
+        ends.extend(stances.copied().map(Some));
         ends.push(None);
         for pair in ends.windows(2) {
-            self.swing(side, &foot, (pair[0], pair[1]), &free, &mut targets);
+            self.swing(side, foot, (pair[0], pair[1]), free, targets);
         }
-        targets
     }
 
     /// The captured foot moved with the course, before it knows of the ground.
@@ -283,42 +310,6 @@ impl Ground<'_> {
             let short = CLEARANCE_M * hump - foot.lowest_point(&target);
             target.ankle.y += soft_positive(short, 0.004 * (PI * s).sin() + 1e-5);
             targets[frame] = target;
-        }
-    }
-
-    /// Lowers the hips, softly, to where the legs reach their feet.
-    fn give_way(&self, poses: &mut [Pose], feet: &[Vec<FootTarget>; 2]) {
-        let skeleton = &self.captured.skeleton;
-        let ahead = (REACH_AHEAD_SECS * self.captured.frame_rate_hz).ceil() as usize;
-        // What smoothing leaves short, a second and third round find.
-        for _ in 0..3 {
-            let mut need = vec![0.0_f32; poses.len()];
-            for (frame, pose) in poses.iter().enumerate() {
-                for side in Side::BOTH {
-                    let hip = pose.rotation(Joint::Hips) * skeleton.offset(side.upper_leg());
-                    let ankle = feet[side.index()][frame].ankle;
-                    let length = skeleton.leg_length(side);
-                    let limit = reach_height(pose.root_position, hip, ankle, length, MOST_STRETCH);
-                    if let Some(limit) = limit {
-                        need[frame] = need[frame].max(pose.root_position.y - limit);
-                    }
-                }
-            }
-            if need.iter().all(|short| *short < 1e-4) {
-                return;
-            }
-            let widened: Vec<f32> = (0..need.len())
-                .map(|frame| {
-                    let to = (frame + ahead).min(need.len() - 1);
-                    need[frame.saturating_sub(ahead)..=to]
-                        .iter()
-                        .copied()
-                        .fold(0.0, f32::max)
-                })
-                .collect();
-            for (pose, lower) in poses.iter_mut().zip(smoothed(&widened, 0.6 * ahead as f32)) {
-                pose.root_position.y -= lower;
-            }
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::DesignError;
 use crate::chance::normal;
 use crate::curve::Monotone;
 use crate::sheet::StyleSheet;
-use footfall_core::{Clip, FrameSpan, Side};
+use footfall_core::{Clip, FrameSpan, ModelPose, Side};
 use footfall_motion::contacts::Contacts;
 use footfall_motion::steps::{Step, Walk};
 
@@ -12,6 +12,10 @@ use footfall_motion::steps::{Step, Walk};
 const DOUBLE_SUPPORT: [f64; 2] = [0.04, 0.5];
 /// A stance or a break in one that is shorter than this is a slip of the detector, seconds.
 const LEAST_SECS: f64 = 0.08;
+
+/// Feet that go slower than this over the ground have come to rest, m/s; they do so within this time after they touch it, seconds.
+const RESTING_MPS: f32 = 0.4;
+const SETTLING_SECS: f64 = 0.06;
 
 /// The new clip's time.
 #[derive(Debug)]
@@ -100,7 +104,13 @@ impl Timeline {
         let cycle = Monotone::new(cycle);
         let phase = source.iter().map(|frame| cycle.at(*frame) as f32).collect();
         let least = (LEAST_SECS * clip.frame_rate_hz).round() as usize;
-        let stances = Side::BOTH.map(|side| stances_of(contacts, side, &source, least));
+        let stances = Side::BOTH.map(|side| {
+            let mut spans = stances_of(contacts, side, &source, least);
+            for span in &mut spans {
+                settle(clip, side, &source, span);
+            }
+            spans
+        });
         if stances.iter().any(Vec::is_empty) {
             return Err(DesignError::TooFewSteps { steps: steps.len() });
         }
@@ -124,6 +134,26 @@ fn new_length(step: &Step, index: usize, sheet: &StyleSheet, seed: u64) -> f64 {
     let chance = 1.0 + 0.01 * sheet.irregular.step_time * normal(seed, 1, index as u64);
     let factor = side.step_time / sheet.walk.cadence * chance.clamp(0.6, 1.6);
     step.frames() as f64 * f64::from(factor)
+}
+
+/// Lets a stance begin where the captured foot has come to rest: a heel that has touched the ground goes on for some frames.
+fn settle(clip: &Clip, side: Side, source: &[f64], span: &mut FrameSpan) {
+    if span.first == 0 {
+        return;
+    }
+    let rate = clip.frame_rate_hz;
+    let place = |frame: usize| {
+        let pose = clip.pose_at(source[frame] / rate).unwrap_or_default();
+        let ankle = ModelPose::of(&clip.skeleton, &pose).position(side.foot());
+        ankle.with_y(0.0)
+    };
+    let most = (SETTLING_SECS * rate) as usize;
+    let last = (span.first + most).min(span.last.saturating_sub(3));
+    while span.first < last
+        && place(span.first).distance(place(span.first + 1)) * rate as f32 > RESTING_MPS
+    {
+        span.first += 1;
+    }
 }
 
 fn stances_of(contacts: &Contacts, side: Side, source: &[f64], least: usize) -> Vec<FrameSpan> {

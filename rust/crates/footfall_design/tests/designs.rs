@@ -24,11 +24,14 @@ fn styled(text: &str) -> Clip {
 }
 
 fn styled_with(text: &str, seed: u64) -> Clip {
-    let clip = walker(RATE_HZ, 960);
-    let contacts = detect_contacts(&clip, &ContactConfig::from_frame(0));
-    let walks = segment_walks(&clip, &contacts);
+    styled_clip(&walker(RATE_HZ, 960), text, seed)
+}
+
+fn styled_clip(clip: &Clip, text: &str, seed: u64) -> Clip {
+    let contacts = detect_contacts(clip, &ContactConfig::from_frame(0));
+    let walks = segment_walks(clip, &contacts);
     let sheet = StyleSheet::parse(text).unwrap();
-    design(&clip, &contacts, &walks, &sheet, seed).unwrap()
+    design(clip, &contacts, &walks, &sheet, seed).unwrap()
 }
 
 fn models(clip: &Clip) -> Vec<ModelPose> {
@@ -102,6 +105,26 @@ fn almost_nothing_changes_almost_nothing() {
             );
         }
     }
+}
+
+#[test]
+fn legs_stay_as_long_where_soles_float() {
+    let captured = walker(RATE_HZ, 960);
+    let mut floating = captured.clone();
+    for pose in &mut floating.poses {
+        pose.root_position.y += 0.02;
+    }
+    let leg = |model: &ModelPose| {
+        let legs = Side::BOTH.map(|side| {
+            model
+                .position(side.upper_leg())
+                .distance(model.position(side.foot()))
+        });
+        legs[0].max(legs[1])
+    };
+    let expected = mean(&captured, leg);
+    let new = mean(&styled_clip(&floating, ALMOST_NOTHING, 1), leg);
+    assert!((new - expected).abs() < 3e-3, "{new} m for {expected} m");
 }
 
 #[test]
