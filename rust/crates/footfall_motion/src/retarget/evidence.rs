@@ -55,7 +55,7 @@ fn bones(position: impl Fn(Joint) -> Vec3, leg_length: f32) -> Vec<f32> {
     Joint::ALL.into_iter().filter_map(length).collect()
 }
 
-fn is_canonical(source: &SourceMotion) -> bool {
+pub(super) fn is_canonical(source: &SourceMotion) -> bool {
     let standard = Skeleton::standard();
     let own = Joint::ALL
         .into_iter()

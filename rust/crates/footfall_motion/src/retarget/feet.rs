@@ -3,7 +3,8 @@
 //! Skeletons differ in the slope of the line from ankle to ball, and in what zero rotations mean for a foot. What they
 //! share is the ground: a foot that neither moves nor is lifted lies flat.
 
-use super::rest::{RestRotations, canonical_direction};
+use super::evidence::is_canonical;
+use super::rest::{RestRotations, canonical_direction, is_t_pose};
 use super::source::SourceMotion;
 use footfall_core::{Joint, Side};
 use glam::{Quat, Vec3, Vec4};
@@ -22,11 +23,21 @@ fn facing_forward(direction: Vec3) -> Quat {
     Quat::from_rotation_y(-direction.x.atan2(direction.z))
 }
 
-/// Finds how foot and toes are turned on flat ground and puts it into `rest`.
+/// Finds how foot and toes are turned on flat ground and puts it into `rest`. The canonical body has flat soles at zero rotations; it may walk on tiptoe.
 pub(super) fn flat_feet(motion: &SourceMotion, rest: &mut RestRotations) -> [FlatFoot; 2] {
+    let is_own_body = is_canonical(motion) && is_t_pose(&motion.rest);
     Side::BOTH.map(|side| {
         let foot = side.foot();
         let toes = side.toes();
+        if is_own_body {
+            for joint in [foot, toes] {
+                rest[joint.index()] = motion.rest.rotation(joint);
+            }
+            return FlatFoot {
+                frames: 0,
+                direction: motion.rest.direction(foot),
+            };
+        }
         let flat = standing_frames(motion, side);
         let turned = |joint: Joint| {
             let rotations: Vec<Quat> = flat

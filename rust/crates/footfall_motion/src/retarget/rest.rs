@@ -93,6 +93,11 @@ fn reference_pose(motion: &SourceMotion) -> Option<&SourceFrame> {
         .find(|frame| stands(frame, 15.0, Some(20.0)))
 }
 
+/// Returns true for the T-pose of the canonical body.
+pub(super) fn is_t_pose(frame: &SourceFrame) -> bool {
+    stands(frame, 5.0, Some(5.0))
+}
+
 /// Returns true when trunk and legs are upright and straight within `tolerance` degrees, and, if asked, the arms level.
 fn stands(frame: &SourceFrame, tolerance: f32, arm_tolerance: Option<f32>) -> bool {
     let within = |direction: Vec3, target: Vec3, degrees: f32| {
