@@ -18,26 +18,21 @@ pub(super) struct FlatFoot {
     pub(super) direction: Vec3,
 }
 
+/// A foot of the canonical body that stands turned further from its zero than this does not lie flat, radians.
+const MOST_TURNED: f32 = 0.26;
+
 /// Rotation about the vertical that brings a direction to +Z as seen from above.
 fn facing_forward(direction: Vec3) -> Quat {
     Quat::from_rotation_y(-direction.x.atan2(direction.z))
 }
 
-/// Finds how foot and toes are turned on flat ground and puts it into `rest`. The canonical body has flat soles at zero rotations; it may walk on tiptoe.
+/// Finds how foot and toes are turned on flat ground and puts it into `rest`. The canonical body has flat soles at zero rotations: one that stands far from them
+/// walks on tiptoe.
 pub(super) fn flat_feet(motion: &SourceMotion, rest: &mut RestRotations) -> [FlatFoot; 2] {
     let is_own_body = is_canonical(motion) && is_t_pose(&motion.rest);
     Side::BOTH.map(|side| {
         let foot = side.foot();
         let toes = side.toes();
-        if is_own_body {
-            for joint in [foot, toes] {
-                rest[joint.index()] = motion.rest.rotation(joint);
-            }
-            return FlatFoot {
-                frames: 0,
-                direction: motion.rest.direction(foot),
-            };
-        }
         let flat = standing_frames(motion, side);
         let turned = |joint: Joint| {
             let rotations: Vec<Quat> = flat
@@ -57,7 +52,18 @@ pub(super) fn flat_feet(motion: &SourceMotion, rest: &mut RestRotations) -> [Fla
                 .normalize_or_zero()
         };
         let foot_local = local(foot);
-        if let Some(rotation) = turned(foot) {
+        let level = facing_forward(motion.rest.direction(foot));
+        let known = [foot, toes].map(|joint| level * motion.rest.rotation(joint));
+        let learned = turned(foot);
+        let on_tiptoe = |learned: Quat| learned.angle_between(known[0]) > MOST_TURNED;
+        if is_own_body && learned.is_some_and(on_tiptoe) {
+            [rest[foot.index()], rest[toes.index()]] = known;
+            return FlatFoot {
+                frames: 0,
+                direction: level * motion.rest.direction(foot),
+            };
+        }
+        if let Some(rotation) = learned {
             rest[foot.index()] = rotation;
         }
         let direction = rest[foot.index()] * foot_local;

@@ -297,8 +297,6 @@ fn feet_keep_their_slope_and_stand_flat() {
         clip.skeleton.offsets[side.toes().index()] = Vec3::new(0.0, -0.1, 0.11);
         clip.skeleton.feet[side.index()].heel.y = -0.12;
     }
-    // Not the canonical one, whose zero rotations are known.
-    clip.skeleton.offsets[Joint::Head.index()] *= 1.3;
     clip.skeleton.offsets[0].y += 0.035;
     for pose in &mut clip.poses {
         pose.root_position.y += 0.035;
