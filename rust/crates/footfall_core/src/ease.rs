@@ -9,6 +9,14 @@ pub fn smooth_step(s: f32) -> f32 {
     s * s * (3.0 - 2.0 * s)
 }
 
+/// From 0 at 0 over 1 at a half to 0 at 1, level at all three and beyond.
+#[inline]
+pub fn hump(s: f32) -> f32 {
+    let s = s.clamp(0.0, 1.0);
+    let both = 4.0 * s * (1.0 - s);
+    both * both
+}
+
 /// The smaller of two numbers, rounded off where they are nearer than a few times `softness`.
 #[inline]
 #[expect(

@@ -215,6 +215,14 @@ impl Side {
         }
     }
 
+    /// This side's `UpperArm` (the shoulder joint).
+    pub const fn upper_arm(self) -> Joint {
+        match self {
+            Self::Left => LeftUpperArm,
+            Self::Right => RightUpperArm,
+        }
+    }
+
     /// This side's `LowerLeg` (the knee joint).
     pub const fn lower_leg(self) -> Joint {
         match self {

@@ -13,14 +13,8 @@ impl GaitCrowd3D {
     /// Advances the crowd; `waits` for pending walkers, or leaves them for a later frame.
     pub(super) fn advance_by(&mut self, dt_secs: f32, waits: bool) {
         let is_new = self.walkers.is_none();
-        if !self.make() {
-            return;
-        }
-        // Reading the character took its share of this frame, and nobody can walk before other threads have prepared the styles.
-        if is_new && !waits {
-            return;
-        }
-        if !self.begin_walkers(waits) {
+        // Reading the character takes its share of a new crowd's frame, and nobody can walk before other threads have prepared the styles.
+        if !self.make() || (is_new && !waits) || !self.begin_walkers(waits) {
             return;
         }
         let limits = self.limits();

@@ -3,6 +3,7 @@
 use super::fading::Fading;
 use crate::leg::FootTarget;
 use crate::rocker::{RockerFoot, foot_heading, foot_pitch};
+use footfall_core::ease::hump;
 use footfall_core::rotation::{exp_map, from_heading, log_map, wrap_angle};
 use glam::{Quat, Vec3};
 
@@ -155,7 +156,7 @@ impl HeldFoot {
             going.parted.advance(dt_secs);
             self.parted = going.parted.left();
             let s = going.parted.share();
-            lift = going.rise.unwrap_or(0.0) * 16.0 * (s * (1.0 - s)).powi(2);
+            lift = going.rise.unwrap_or(0.0) * hump(s);
             if s >= 1.0 {
                 self.going = None;
             } else if stands && going.rise.is_none() {

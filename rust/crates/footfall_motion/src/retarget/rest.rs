@@ -64,10 +64,7 @@ pub(super) fn rest_rotations(motion: &SourceMotion) -> RestRotations {
         f32::INFINITY
     };
     for side in Side::BOTH {
-        let arm = match side {
-            Side::Left => Joint::LeftUpperArm,
-            Side::Right => Joint::RightUpperArm,
-        };
+        let arm = side.upper_arm();
         let elbow_axis = Vec3::NEG_Y * side.sign();
         for (upper, lower, axis) in [
             (side.upper_leg(), side.lower_leg(), Vec3::X),
@@ -222,10 +219,7 @@ fn from_structure(motion: &SourceMotion) -> RestRotations {
     }
     // Even weak evidence of a hinge is better than none here.
     for side in Side::BOTH {
-        let upper_arm = match side {
-            Side::Left => Joint::LeftUpperArm,
-            Side::Right => Joint::RightUpperArm,
-        };
+        let upper_arm = side.upper_arm();
         let lower_arm = Joint::ALL[upper_arm.index() + 1];
         for (upper, lower, axis) in [
             (side.upper_leg(), side.lower_leg(), Vec3::X),

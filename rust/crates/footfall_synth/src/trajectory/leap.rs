@@ -5,8 +5,9 @@
 
 use crate::plan::StepTiming;
 use core::f32::consts::PI;
+use footfall_core::Joint;
+use footfall_core::ease::hump;
 use footfall_core::rotation::{exp_map, log_map};
-use footfall_core::{Joint, Side};
 use footfall_model::FEATURE_COUNT;
 use footfall_model::layout::feature_offset;
 use glam::{Quat, Vec3};
@@ -49,16 +50,9 @@ pub(crate) fn add_leap(rows: &mut [f32], timing: &StepTiming, rise_m: f32) {
                 let bent = row[feature_offset(joint)];
                 flex(row, joint, amount * (angle - bent));
             }
-            flex(row, upper_arm(side), -early * arm);
+            flex(row, side.upper_arm(), -early * arm);
         }
     }
-}
-
-/// Returns the size of a hump over a share from 0 to 1: at rest at both ends, 1 in the middle.
-fn hump(s: f32) -> f32 {
-    let s = s.clamp(0.0, 1.0);
-    let both = 4.0 * s * (1.0 - s);
-    both * both
 }
 
 /// Turns a joint about the lateral axis of its parent.
@@ -71,16 +65,10 @@ fn flex(row: &mut [f32], joint: Joint, angle: f32) {
     vector.copy_from_slice(&log_map(turned).to_array());
 }
 
-fn upper_arm(side: Side) -> Joint {
-    match side {
-        Side::Left => Joint::LeftUpperArm,
-        Side::Right => Joint::RightUpperArm,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use footfall_core::Side;
 
     #[test]
     fn nothing_is_added_where_the_legs_bear() {

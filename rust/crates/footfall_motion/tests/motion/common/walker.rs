@@ -125,10 +125,7 @@ pub(crate) fn bend_leg(skeleton: &Skeleton, pose: &mut Pose, side: Side, forward
 }
 
 fn swing_arm(pose: &mut Pose, side: Side, phase: f32) {
-    let upper = match side {
-        Side::Left => Joint::LeftUpperArm,
-        Side::Right => Joint::RightUpperArm,
-    };
+    let upper = side.upper_arm();
     let sign = side.sign();
     let hang = Quat::from_rotation_z(-1.3 * sign);
     pose.rotations[upper.index()] = Quat::from_rotation_x(0.4 * phase.cos()) * hang;

@@ -7,7 +7,7 @@ use super::{ABSORPTION, DIP, PUSH, RECOVERY, Timing};
 use crate::gait::Posture;
 use crate::moves::body::Beside;
 use footfall_core::Pose;
-use footfall_core::ease::hermite;
+use footfall_core::ease::{hermite, hump};
 use footfall_model::{BESIDE_COUNT, JUMP_PHASES, JUMP_RESPONSES, JumpModel, layout};
 
 /// Durations of dip and recovery, seconds: recorded ones are slow, players are impatient.
@@ -234,6 +234,5 @@ fn sum(responses: &[f32; JUMP_RESPONSES], factors: [f32; JUMP_RESPONSES]) -> f32
 
 /// Returns the height of a bulge at part `s` of a phase: at rest at both ends, a sixteenth in the middle.
 pub(super) fn bulging(s: f32) -> f32 {
-    let both = s * (1.0 - s);
-    both * both
+    hump(s) / 16.0
 }
