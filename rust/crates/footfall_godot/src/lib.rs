@@ -71,6 +71,7 @@ unsafe impl ExtensionLibrary for FootfallExtension {
     fn on_stage_deinit(stage: InitStage) {
         if stage == InitStage::Scene {
             format_loader::unregister();
+            gait_crowd_3d::release_shader();
             footfall_rig::crowd::finish_disposals();
         }
     }

@@ -1,5 +1,6 @@
 //! A character's meshes as a crowd draws them: in the T-pose, with joints and weights where a shader finds them.
 
+use super::crowd_material::crowd_material;
 use super::stand_in_mesh::StandInMesh;
 use crate::bones;
 use crate::convert;
@@ -8,8 +9,7 @@ use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Skeleton};
 use glam::{Affine3A, Vec3, Vec3A};
 use godot::classes::mesh::{ArrayCustomFormat, ArrayFormat, ArrayType, PrimitiveType};
 use godot::classes::{
-    ArrayMesh, BaseMaterial3D, Material, Mesh, MeshInstance3D, Node3D, PackedScene, ShaderMaterial,
-    Skeleton3D,
+    ArrayMesh, Mesh, MeshInstance3D, Node3D, PackedScene, ShaderMaterial, Skeleton3D,
 };
 use godot::obj::{EngineBitfield as _, EngineEnum as _};
 use godot::prelude::*;
@@ -271,24 +271,6 @@ fn strongest(by_joint: &[f32; JOINT_COUNT]) -> ([f32; INFLUENCES], [f32; INFLUEN
     let total: f32 = joints.iter().map(|joint| by_joint[*joint]).sum();
     let weights = joints.map(|joint| by_joint[joint] / total.max(1e-6));
     (joints.map(|joint| joint as f32), weights)
-}
-
-/// The crowd's shader with what a character's own material says.
-pub(super) fn crowd_material(own: Option<Gd<Material>>) -> Option<Gd<ShaderMaterial>> {
-    let shader =
-        try_load::<godot::classes::Shader>("res://addons/footfall/shaders/crowd.gdshader").ok()?;
-    let mut material = ShaderMaterial::new_gd();
-    material.set_shader(&shader);
-    if let Some(own) = own.and_then(|own| own.try_cast::<BaseMaterial3D>().ok()) {
-        use godot::classes::base_material_3d::TextureParam;
-        material.set_shader_parameter("albedo", &own.get_albedo().to_variant());
-        material.set_shader_parameter("roughness", &own.get_roughness().to_variant());
-        material.set_shader_parameter("metallic", &own.get_metallic().to_variant());
-        if let Some(texture) = own.get_texture(TextureParam::ALBEDO) {
-            material.set_shader_parameter("albedo_texture", &texture.to_variant());
-        }
-    }
-    Some(material)
 }
 
 /// Gives the shaders of a mesh these poses.

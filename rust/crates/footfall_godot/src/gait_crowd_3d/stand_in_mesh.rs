@@ -1,6 +1,7 @@
 //! The mesh of a crowd's stand-ins, made of a character's mesh as the crowd draws it.
 
-use super::crowd_mesh::{INFLUENCES, add_surface, crowd_material};
+use super::crowd_material::crowd_material;
+use super::crowd_mesh::{INFLUENCES, add_surface};
 use super::instances::draws_in_srgb;
 use super::paint::Paint;
 use crate::convert;
