@@ -94,7 +94,7 @@ impl StepChooser {
                 self.turning(pace, controls.turn_rate)
             };
         }
-        let request = StepRequest {
+        let mut request = StepRequest {
             manner: Manner {
                 pace,
                 position: StepPosition::Inside,
@@ -106,6 +106,9 @@ impl StepChooser {
             facing,
             leap_m: controls.leap_m,
         };
+        if gait == Gait::Walk && self.will_run(controls) {
+            request.gain(controls);
+        }
         (request, gait)
     }
 
@@ -159,7 +162,7 @@ impl StepChooser {
         if gait == Gait::Walk {
             pace = self.turning(self.walk.within(pace, secs), controls.turn_rate);
         }
-        StepRequest {
+        let mut request = StepRequest {
             manner: Manner {
                 pace,
                 ..before.manner
@@ -168,7 +171,11 @@ impl StepChooser {
             velocity_mps: *velocity_mps,
             facing,
             ..*before
+        };
+        if gait == Gait::Walk && self.will_run(controls) {
+            request.gain(controls);
         }
+        request
     }
 
     /// Returns the pace and the facing for a velocity to the left and forwards, m/s. A runner faces the direction of travel.
@@ -212,6 +219,15 @@ impl StepChooser {
         controls
             .gait
             .of_step(before, velocity_mps, self.leg_length, ends)
+    }
+
+    /// Returns true if a walker goes over to a run to follow the controls.
+    fn will_run(&self, controls: &StepControls) -> bool {
+        let wanted = controls.velocity_mps;
+        let gait = controls
+            .gait
+            .of_step(Gait::Walk, wanted, self.leg_length, false);
+        self.run.is_some() && gait == Gait::Run
     }
 
     /// Maximum speed of a first step, and maximum speed from which a step can stop, m/s.

@@ -35,6 +35,15 @@ impl Pace {
         let covariate = (self.covariate_mps - other.covariate_mps).abs();
         covariate + (self.tempo - other.tempo).abs() + (self.stride - other.stride).abs()
     }
+
+    /// Returns the pace of the same speed with steps that are quicker, and shorter, by this factor.
+    pub(crate) fn quicker(self, factor: f64) -> Self {
+        Self {
+            tempo: self.tempo * factor,
+            stride: self.stride / factor,
+            ..self
+        }
+    }
 }
 
 /// Speeds of one walker at the paces of the model.

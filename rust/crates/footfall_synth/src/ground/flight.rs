@@ -18,7 +18,7 @@ use glam::Quat;
 
 /// Bounds of the upward speed at take-off, m/s, relative to the one that returns the hips to the same height. Legs that
 /// disagree more about the end of a short flight are bent or stretched.
-const MOST_LIFT_MPS: f32 = 0.3;
+const MOST_LIFT_MPS: f32 = 0.4;
 
 /// Height of the hips at the landing of a run, as a share of the way from the height over the landing foot to that over the foot that takes
 /// off.
@@ -35,8 +35,9 @@ const BEARING_SHARE: f32 = 0.9;
 const RUN_EXTENSION: f32 = 0.995;
 const LEAP_EXTENSION: f32 = 0.98;
 
-/// Greatest speed at which a knee gives way as its foot lands, rad/s, and the sine of half its greatest bend for that.
-const GIVING_WAY: f32 = 20.0;
+/// Greatest speed at which a knee gives way as its foot lands from a run and from a leap, rad/s, and the sine of half its greatest bend for that.
+const GIVING_WAY: f32 = 8.0;
+const LEAP_GIVING_WAY: f32 = 20.0;
 const MOST_BENT: f32 = 0.5;
 
 impl Planter {
@@ -69,10 +70,16 @@ impl Planter {
     }
 
     /// Returns how much lower than over the generated leg the hips land when they fall at a speed, metres: a leg that is nearly straight would have to fold at once.
-    fn give(&self, generated: &GeneratedFrame, side: Side, fall_mps: f32) -> f32 {
+    fn give(&self, generated: &GeneratedFrame, timing: &StepTiming, fall_mps: f32) -> f32 {
+        let giving_way = if self.leaps(timing) {
+            LEAP_GIVING_WAY
+        } else {
+            GIVING_WAY
+        };
+        let side = timing.leading.other();
         let length = self.leg_lengths[side.index()];
         // Half a leg's length times the sine of half the bend is what the leg loses per radian of the knee.
-        let half_bend = (fall_mps / (0.5 * length * GIVING_WAY)).clamp(0.0, MOST_BENT);
+        let half_bend = (fall_mps / (0.5 * length * giving_way)).clamp(0.0, MOST_BENT);
         let reach = length * (1.0 - half_bend * half_bend).sqrt();
         let leg = &generated.legs[side.index()];
         let down = leg.ankle - leg.hip;
@@ -120,7 +127,7 @@ impl Planter {
         let even = 0.5 * GRAVITY_MPS2 * flight_secs;
         let lands = timing.leading.other();
         let landing = self.landing_height(&generated[timing.frames], lands)
-            - self.give(&generated[timing.frames], lands, even);
+            - self.give(&generated[timing.frames], timing, even);
         let stance_secs = take_off as f32 * self.frame_secs;
         let limited = |lift: f32| even + lift.clamp(-MOST_LIFT_MPS, MOST_LIFT_MPS);
         let rise = match self.state.hips_velocity {

@@ -89,7 +89,7 @@ impl Planter {
             terminal: self.release(generated, timing, out),
             ..*timing
         };
-        if course.keeps_lengths {
+        if course.keeps_lengths || timing.sets_off {
             // A raised heel spares the hips.
             self.raise_heels(generated, timing, out);
         }

@@ -11,6 +11,7 @@ use super::planter::Planter;
 use crate::plan::StepTiming;
 use core::f32::consts::TAU;
 use footfall_core::Side;
+use footfall_core::ease::hermite;
 use footfall_core::rotation::from_heading;
 use glam::Vec3;
 
@@ -29,12 +30,15 @@ impl Planter {
         let Some(velocity) = self.state.hips_velocity else {
             return;
         };
-        if !self.runs_on(timing) {
-            return;
-        }
         let flight = &out[usize::midpoint(take_off, timing.frames)];
         let along = from_heading(flight.ground_heading + direction) * Vec3::Z;
         let left = Vec3::new(along.z, 0.0, -along.x);
+        if !self.runs_on(timing) {
+            if !self.leaps(timing) {
+                straighten(left, velocity * self.frame_secs, &mut out[..=take_off + 1]);
+            }
+            return;
+        }
         let begin = out[0].pose.root_position;
         let way = along.dot(out[timing.frames].pose.root_position - begin);
         let frames = timing.frames as f32;
@@ -65,6 +69,20 @@ impl Planter {
             let moved = begin + stance.way(time) + along * braked - *hips;
             *hips += left * left.dot(moved) + along * ((1.0 - kept) * along.dot(moved));
         }
+    }
+}
+
+/// Moves the hips in the first stance of a run aside, on a cubic from their velocity to that of the flight, metres per frame, and from place to place. Hips
+/// that settle onto the path above a foot that has landed in a sharp turn are thrown aside within three frames. `stance` ends with the first frame of the flight.
+fn straighten(left: Vec3, velocity: Vec3, stance: &mut [PlantedFrame]) {
+    let frames = stance.len() - 2;
+    let aside = |frame: usize| left.dot(stance[frame].pose.root_position);
+    let (from, to) = (aside(0), aside(frames));
+    let ends = [left.dot(velocity), aside(frames + 1) - to].map(|pace| pace * frames as f32);
+    for (index, frame) in stance[..frames].iter_mut().enumerate() {
+        let hips = &mut frame.pose.root_position;
+        let s = index as f32 / frames as f32;
+        *hips += left * (hermite(from, ends[0], to, ends[1], s) - left.dot(*hips));
     }
 }
 

@@ -7,14 +7,13 @@ use footfall_model::{OBSERVATION_COUNT, STATES_PER_STEP};
 const GONE_OVER: [f32; STATES_PER_STEP] = [0.15, 0.4, 0.7, 0.9, 1.0];
 
 impl StepPlan<f32> {
-    /// Turns this plan into a change of gait that begins like `before`, the same step in the previous gait. The first step of a run lasts
-    /// as long as the walk's, whose foot has landed as far ahead; the first of a walk as long as the mean of both.
+    /// Turns this plan into a change of gait that begins like `before`, the same step in the previous gait. It lasts as long as the mean of both, and the first step of a run
+    /// at least as long as others: hips that had a walked step's time to pass the foot ahead would not gain speed.
     pub(crate) fn go_over_from(&mut self, before: &Self) {
         let runs = self.shape.timing.take_off.is_some();
-        let longer = self.state_frames.iter_mut().zip(before.state_frames);
-        for (frames, before) in longer {
+        for (frames, before) in self.state_frames.iter_mut().zip(before.state_frames) {
             *frames = if runs {
-                before.max(*frames)
+                *frames + before.saturating_sub(*frames).div_ceil(2)
             } else {
                 frames.midpoint(before).max(1)
             };

@@ -147,8 +147,7 @@ impl StepWindow {
         let mut solved = false;
         if haste > 1.0 {
             let pace = &mut self.origin.request.manner.pace;
-            pace.tempo *= haste;
-            pace.stride /= haste;
+            *pace = pace.quicker(haste);
             self.planted.resume(&feet);
             self.plan(planner, 1, buffers);
             self.solve_and_plant(buffers);

@@ -66,7 +66,7 @@ pub(crate) fn assert_restores(
 }
 
 /// A walker who has stood for some frames.
-fn stood(seed: u64, frames: usize) -> (GaitGenerator, Vec<Frame>) {
+pub(crate) fn stood(seed: u64, frames: usize) -> (GaitGenerator, Vec<Frame>) {
     let mut walker = generator(Kind::Styled, seed);
     walker.stand();
     let (frames, _) = run(&mut walker, &Skeleton::standard(), &Controls::STAND, frames);

@@ -139,6 +139,20 @@ fn runs_go_where_they_are_sent() {
     }
 }
 
+/// Only the steps into a run are shorter than those of a walk.
+#[test]
+fn who_is_to_walk_fast_takes_long_steps() {
+    let controls = Controls {
+        gait: GaitChoice::Walk,
+        ..walking(2.7)
+    };
+    let mut generator = generator(Kind::Styled, 3);
+    let (frames, steps) = run(&mut generator, &Skeleton::standard(), &controls, 600);
+    let way = frames[frames.len() - 1].place - frames[0].place;
+    let length = way.length() / steps.len() as f32;
+    assert!(length > 0.85, "steps of {length} m");
+}
+
 /// A trunk that bends forwards in a run goes back with the first steps of a walk, and not within a frame; a leg that takes off does not snap straight.
 #[test]
 fn heads_and_knees_go_smoothly_through_changes_of_gait() {
