@@ -94,7 +94,7 @@ impl StepChooser {
                 self.turning(pace, controls.turn_rate)
             };
         }
-        let mut request = StepRequest {
+        let request = StepRequest {
             manner: Manner {
                 pace,
                 position: StepPosition::Inside,
@@ -106,10 +106,7 @@ impl StepChooser {
             facing,
             leap_m: controls.leap_m,
         };
-        if gait == Gait::Walk && self.will_run(controls) {
-            request.gain(controls);
-        }
-        (request, gait)
+        (self.gaining(request, controls, gait), gait)
     }
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
@@ -162,7 +159,7 @@ impl StepChooser {
         if gait == Gait::Walk {
             pace = self.turning(self.walk.within(pace, secs), controls.turn_rate);
         }
-        let mut request = StepRequest {
+        let request = StepRequest {
             manner: Manner {
                 pace,
                 ..before.manner
@@ -172,10 +169,7 @@ impl StepChooser {
             facing,
             ..*before
         };
-        if gait == Gait::Walk && self.will_run(controls) {
-            request.gain(controls);
-        }
-        request
+        self.gaining(request, controls, gait)
     }
 
     /// Returns the pace and the facing for a velocity to the left and forwards, m/s. A runner faces the direction of travel.
@@ -221,13 +215,16 @@ impl StepChooser {
             .of_step(before, velocity_mps, self.leg_length, ends)
     }
 
-    /// Returns true if a walker goes over to a run to follow the controls.
-    fn will_run(&self, controls: &StepControls) -> bool {
-        let wanted = controls.velocity_mps;
-        let gait = controls
+    /// Returns the request for a step of this gait, gaining speed if it is walked and the controls ask for a run.
+    fn gaining(&self, request: StepRequest, controls: &StepControls, gait: Gait) -> StepRequest {
+        let wanted = controls
             .gait
-            .of_step(Gait::Walk, wanted, self.leg_length, false);
-        self.run.is_some() && gait == Gait::Run
+            .of_step(gait, controls.velocity_mps, self.leg_length, false);
+        if self.run.is_some() && (gait, wanted) == (Gait::Walk, Gait::Run) {
+            request.gaining(controls)
+        } else {
+            request
+        }
     }
 
     /// Maximum speed of a first step, and maximum speed from which a step can stop, m/s.

@@ -17,12 +17,13 @@ const WANTED_MPS: [f32; 2] = [2.0, 2.8];
 const TURNING_RADPS: f32 = 1.5;
 
 impl StepRequest {
-    /// Makes a walked step quicker and shorter if the walker is to run.
-    pub(super) fn gain(&mut self, controls: &StepControls) {
+    /// Returns the request for a walked step before a run: quicker and shorter.
+    pub(super) fn gaining(mut self, controls: &StepControls) -> Self {
         let [from, to] = WANTED_MPS;
         let runs = smooth_step((controls.velocity_mps.length() - from) / (to - from));
         let straight = 1.0 - smooth_step(self.turn_rate.abs() / TURNING_RADPS);
         let quicker = QUICKER * straight * runs;
         self.manner.pace = self.manner.pace.quicker(f64::from(1.0 + quicker));
+        self
     }
 }

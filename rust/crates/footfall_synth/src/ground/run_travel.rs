@@ -22,7 +22,7 @@ const SWAY_MPS: f32 = 0.07;
 const BRAKING: f32 = 0.06;
 
 impl Planter {
-    /// Moves the hips along the direction of the run, from flight to flight. The effect of a [change of speed](super::SpeedChange) along it is kept.
+    /// Moves the hips along the direction of the run, from flight to flight, and evenly aside in its first stance. The effect of a [change of speed](super::SpeedChange) along it is kept.
     pub(super) fn thrust(&self, timing: &StepTiming, course: Course, out: &mut [PlantedFrame]) {
         let (Some(take_off), Some(direction)) = (timing.take_off, course.direction) else {
             return;
