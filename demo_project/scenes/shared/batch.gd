@@ -2,7 +2,7 @@ extends Node
 ## Runs the scene without a user, as asked after `--` on the command line:
 ##
 ## `--pictures FOLDER` saves what the scene shows, a picture every quarter of a second, then three close-ups, and quits.
-## `--film FOLDER` saves twelve pictures a second of the scene's tour, and quits.
+## `--film FOLDER` saves twenty pictures a second of the scene's tour, and quits.
 ## `--frames N` runs N frames, checks what the scene promises, prints `DEMO OK` and quits; the exit code is 1 when it did not keep it.
 ## `--speed MPS`, with one of these, asks all walkers of a scene of walkers for another speed.
 ## `--every-scene N` goes to the menu, which looks into all of them.
@@ -16,7 +16,7 @@ extends Node
 
 const PICTURES := 16
 const FRAMES_BETWEEN := 15
-const FRAMES_OF_FILM := 5
+const FRAMES_OF_FILM := 3
 @onready var _scene := get_parent()
 
 

@@ -43,11 +43,13 @@ mod platforms;
 mod process;
 mod progress;
 mod release;
+mod shared_libraries;
 mod skipped;
 mod tidy;
 mod tools;
 mod verify;
 mod vulkan;
+mod webp;
 
 use clap::{Parser, Subcommand};
 use std::path::PathBuf;

@@ -3,6 +3,7 @@
 //! On Debian-like systems without one it is fetched into the cache from the machine's own archive (16 MB), as Mono is.
 
 use crate::apt;
+use crate::shared_libraries::{self, entries};
 use anyhow::{Context as _, Result};
 use serde_json::Value;
 use std::env;
@@ -58,14 +59,7 @@ impl Vulkan {
         match self {
             Self::Installed => command,
             Self::Unpacked { libraries, driver } => {
-                let before = env::var_os("LD_LIBRARY_PATH").unwrap_or_default();
-                // An empty name would be the folder that the program is started in.
-                let others = env::split_paths(&before).filter(|folder| folder != Path::new(""));
-                let folders = std::iter::once(libraries.clone()).chain(others);
-                let joined = env::join_paths(folders).unwrap_or_else(|_| libraries.into());
-                command
-                    .env("LD_LIBRARY_PATH", joined)
-                    .env("VK_ICD_FILENAMES", driver)
+                shared_libraries::looked_for_in(command, libraries).env("VK_ICD_FILENAMES", driver)
             }
         }
     }
@@ -73,12 +67,7 @@ impl Vulkan {
 
 /// The folder of a system's libraries that has the loader.
 fn libraries(root: &Path) -> Option<PathBuf> {
-    let library = root.join("usr/lib");
-    let folders = entries(&library).into_iter();
-    [library.clone(), root.join("usr/lib64")]
-        .into_iter()
-        .chain(folders)
-        .find(|folder| folder.join(LOADER).exists())
+    shared_libraries::folder_of(LOADER, root)
 }
 
 /// Description of any driver of a system.
@@ -98,14 +87,6 @@ fn software(root: &Path) -> Option<PathBuf> {
         name.to_string_lossy().starts_with("lvp_icd")
     };
     entries(&root.join(DRIVERS[0])).into_iter().find(named)
-}
-
-/// Files of a folder in order; none of one that is not there.
-fn entries(folder: &Path) -> Vec<PathBuf> {
-    let found = fs::read_dir(folder).into_iter().flatten().flatten();
-    let mut paths: Vec<PathBuf> = found.map(|entry| entry.path()).collect();
-    paths.sort();
-    paths
 }
 
 /// A description of a driver whose library lies in another folder than where it would be installed.
