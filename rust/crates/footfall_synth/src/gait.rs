@@ -1,7 +1,7 @@
 //! Gaits: from controls to the request for the next step.
 //!
 //! [`StepControls`] are the controls that one step can follow. [`StepChooser`] makes a [`StepRequest`] of them: standing or walking on ([`stand`]), walking or running
-//! ([`kinds`]), the velocity that the step reaches, and the pace for it ([`pace`], measured once for each body; [`gaining`]). A jump off one foot is a request too ([`StepRequest::leap_m`]).
+//! ([`kinds`]), the velocity that the step reaches, and the pace for it ([`pace`], measured once for each body; [`gaining`], [`slowing`]). A jump off one foot is a request too ([`StepRequest::leap_m`]).
 
 mod applied;
 mod chooser;
@@ -10,6 +10,7 @@ mod gaining;
 mod kinds;
 mod pace;
 mod request;
+mod slowing;
 mod stand;
 
 pub(crate) use applied::AppliedControls;

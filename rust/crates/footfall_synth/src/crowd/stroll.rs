@@ -220,7 +220,7 @@ impl Stroll {
                 } else {
                     Gait::Walk
                 };
-                let most = gait.most_change_mps();
+                let most = gait.most_change_mps(false);
                 now + (wanted - now).clamp(-most, most)
             };
             (nearest_speed(speed_mps), speed_mps.min(FASTEST_RUN_MPS))

@@ -67,7 +67,8 @@ impl StepChooser {
     ) -> (StepRequest, Gait) {
         let mut amplitude = controls.amplitude;
         let too_fast = velocity_mps.length() > self.first_mps();
-        if amplitude.to < 1.0 && amplitude.from >= 1.0 && too_fast {
+        let slows = amplitude.to < 1.0 && amplitude.from >= 1.0 && too_fast;
+        if slows {
             // A runner slows down before stopping.
             amplitude.to = 1.0;
         }
@@ -80,7 +81,8 @@ impl StepChooser {
             };
             *velocity_mps = controls.velocity_mps.clamp_length_max(most);
         } else if amplitude.to >= 1.0 {
-            *velocity_mps = controls.velocity_after(*velocity_mps, gait_before);
+            let most = gait_before.most_change_mps(slows);
+            *velocity_mps = controls.velocity_within(*velocity_mps, most);
         }
         let gait = self.gait(controls, gait_before, amplitude, *velocity_mps);
         *velocity_mps = velocity_mps.clamp_length_max(gait.fastest_mps());
@@ -106,12 +108,12 @@ impl StepChooser {
             facing,
             leap_m: controls.leap_m,
         };
-        (self.gaining(request, controls, gait), gait)
+        (self.changing(request, controls, gait, slows), gait)
     }
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
     /// A walker that is to stop brings the feet together, provided that the hips need not brake too hard to come to rest above the standing foot; otherwise it
-    /// slows down, and the next step does so. A runner goes on running until the step ends.
+    /// slows down, and the next step does so. A runner slows down.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
@@ -128,7 +130,9 @@ impl StepChooser {
             .closes
             .unwrap_or(passed.share < CLOSED_FROM && gently && forwards);
         let inside = before.amplitude == Amplitude::WALK;
-        let stops = gait == Gait::Walk && inside && controls.amplitude.to < 1.0;
+        let stands = controls.amplitude.to < 1.0;
+        let stops = gait == Gait::Walk && inside && stands;
+        let slows = gait == Gait::Run && stands;
         if stops && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
@@ -138,11 +142,12 @@ impl StepChooser {
         }
         *velocity_mps = match gait {
             Gait::Walk => {
-                let wanted = controls.velocity_after(*velocity_mps, gait);
+                let most = gait.most_change_mps(slows);
+                let wanted = controls.velocity_within(*velocity_mps, most);
                 wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()))
             }
             Gait::Run => {
-                let most = gait.most_change_mps() * (1.0 - passed.borne);
+                let most = gait.most_change_mps(slows) * (1.0 - passed.borne);
                 controls.velocity_within(passed.velocity_mps, most)
             }
         };
@@ -169,7 +174,7 @@ impl StepChooser {
             facing,
             ..*before
         };
-        self.gaining(request, controls, gait)
+        self.changing(request, controls, gait, slows)
     }
 
     /// Returns the pace and the facing for a velocity to the left and forwards, m/s. A runner faces the direction of travel.
@@ -215,8 +220,17 @@ impl StepChooser {
             .of_step(before, velocity_mps, self.leg_length, ends)
     }
 
-    /// Returns the request for a step of this gait, gaining speed if it is walked and the controls ask for a run.
-    fn gaining(&self, request: StepRequest, controls: &StepControls, gait: Gait) -> StepRequest {
+    /// Returns the request for a step of this gait, slowing down to stand or, if it is walked and the controls ask for a run, gaining speed.
+    fn changing(
+        &self,
+        request: StepRequest,
+        controls: &StepControls,
+        gait: Gait,
+        slows: bool,
+    ) -> StepRequest {
+        if slows {
+            return request.slowing(gait);
+        }
         let wanted = controls
             .gait
             .of_step(gait, controls.velocity_mps, self.leg_length, false);

@@ -1,5 +1,6 @@
 //! Walking and running, and the choice between them.
 
+use super::slowing::LESS_LOST;
 use crate::controls::{FASTEST_RUN_MPS, GaitChoice};
 use glam::Vec2;
 
@@ -60,9 +61,10 @@ impl GaitChoice {
 }
 
 impl Gait {
-    /// Largest difference in velocity from the previous step, m/s.
-    pub(crate) const fn most_change_mps(self) -> f32 {
-        MOST_CHANGE_MPS[self as usize]
+    /// Largest difference in velocity from the previous step, m/s. `slows` is true for the quick steps in which a runner slows down to stand.
+    pub(crate) const fn most_change_mps(self, slows: bool) -> f32 {
+        let share = if slows { LESS_LOST } else { 1.0 };
+        share * MOST_CHANGE_MPS[self as usize]
     }
 
     /// Fastest speed of the gait, m/s.

@@ -1,6 +1,5 @@
 //! Controls of one step, and the request that a gait makes of them.
 
-use super::kinds::Gait;
 use super::pace::Pace;
 use super::stand::Amplitude;
 use crate::controls::{Controls, GaitChoice};
@@ -43,11 +42,6 @@ impl StepControls {
             closes: None,
             detail,
         }
-    }
-
-    /// Returns the velocity of the next step, after one of this velocity and gait.
-    pub(crate) fn velocity_after(&self, velocity_mps: Vec2, gait: Gait) -> Vec2 {
-        self.velocity_within(velocity_mps, gait.most_change_mps())
     }
 
     /// Returns the velocity of the next step, at most `most_mps` from that of this one.

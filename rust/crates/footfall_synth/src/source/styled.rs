@@ -186,9 +186,7 @@ impl StepSource for StyledSteps {
     }
 
     fn needs_replan(&self, controls: &StepControls) -> bool {
-        // A runner who is to stop slows down in whole steps.
-        let stops = self.gait() == Gait::Run && controls.amplitude.to < 1.0;
-        !self.applied.stretched && !stops && self.applied.differs_from(controls)
+        !self.applied.stretched && self.applied.differs_from(controls)
     }
 
     fn replan(&mut self, controls: &StepControls, frame: usize) -> bool {

@@ -76,6 +76,33 @@ fn who_sets_out_for_a_run_takes_short_steps_and_does_not_lurch() {
     assert!(mean(&first_steps) < 0.36, "first steps {first_steps:?} s");
 }
 
+/// O3DE's actor stops from 3.4 m/s in four to six steps of 0.18 to 0.28 s; one long step would brake over one deeply bent knee.
+#[test]
+fn who_stops_from_a_run_takes_quick_steps() {
+    let skeleton = Skeleton::standard();
+    let mut secs = Vec::new();
+    for seed in 1..13 {
+        let mut walker = generator(Kind::Styled, seed);
+        let before = 150 + 7 * seed as usize;
+        run(&mut walker, &skeleton, &walking(3.4), before);
+        let (frames, _) = run(&mut walker, &skeleton, &Controls::STAND, 120);
+        assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+        let lands = |pair: &[Frame]| {
+            let [before, after] = [pair[0].contact, pair[1].contact];
+            (0..2).any(|side| !before[side] && after[side])
+        };
+        let pairs = frames.windows(2).enumerate();
+        let landings: Vec<usize> = pairs
+            .filter_map(|(at, pair)| lands(pair).then_some(at))
+            .collect();
+        let steps = landings.windows(2).map(|pair| pair[1] - pair[0]);
+        secs.extend(steps.map(|frames| frames as f32 * DT));
+    }
+    assert!(secs.len() >= 30, "twelve walkers take {} steps", secs.len());
+    let mean = secs.iter().sum::<f32>() / secs.len() as f32;
+    assert!(mean < 0.32, "{mean} s from landing to landing");
+}
+
 #[test]
 fn a_change_in_the_middle_of_a_stance_is_obeyed_without_a_pop() {
     let skeleton = Skeleton::standard();
