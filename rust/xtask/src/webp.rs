@@ -10,7 +10,7 @@ use std::process::Command;
 const PACKAGES: [&str; 1] = ["webp"];
 const PROGRAM: &str = "img2webp";
 /// One of its libraries, in the folder of all of them.
-const LIBRARY: &str = "libwebp.so.7";
+const LIBRARY: &str = "libwebpdemux.so.2";
 
 /// Finds `img2webp`, or fetches it.
 ///
