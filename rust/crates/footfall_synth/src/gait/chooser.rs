@@ -113,7 +113,7 @@ impl StepChooser {
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
     /// A walker that is to stop brings the feet together, provided that the hips need not brake too hard to come to rest above the standing foot; otherwise it
-    /// slows down, and the next step does so. A runner slows down.
+    /// slows down, and the next step does so. A runner that is to stop slows down within the stance.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
@@ -140,16 +140,13 @@ impl StepChooser {
                 ..*before
             };
         }
+        let most = gait.most_change_mps(slows);
         *velocity_mps = match gait {
             Gait::Walk => {
-                let most = gait.most_change_mps(slows);
                 let wanted = controls.velocity_within(*velocity_mps, most);
                 wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()))
             }
-            Gait::Run => {
-                let most = gait.most_change_mps(slows) * (1.0 - passed.borne);
-                controls.velocity_within(passed.velocity_mps, most)
-            }
+            Gait::Run => controls.velocity_within(passed.velocity_mps, most * (1.0 - passed.borne)),
         };
         let mut mean_mps = *velocity_mps;
         if stops && forwards {

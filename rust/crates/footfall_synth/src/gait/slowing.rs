@@ -1,6 +1,6 @@
 //! Steps in which a runner slows down to stand: quicker and shorter ones.
 //!
-//! People who stop from a run brake over four or five quick, short steps, each foot well ahead of the hips. In a step as long as those of the run before
+//! People who stop from a run brake over four to six quick, short steps, each foot well ahead of the hips. In a step as long as those of the run before
 //! they would lose half of their speed over one foot, on a deeply bent knee.
 
 use super::kinds::Gait;
