@@ -11,6 +11,7 @@
 mod arrival;
 mod balance;
 mod bounce;
+mod braked_travel;
 mod course;
 mod cut;
 mod displacement;

@@ -72,6 +72,7 @@ impl StepChooser {
             // A runner slows down before stopping.
             amplitude.to = 1.0;
         }
+        let slows = slows || controls.slows_to_walk(gait_before, *velocity_mps, self.leg_length);
         let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
         if sets_out {
             let most = if self.run.is_some() {
@@ -113,7 +114,7 @@ impl StepChooser {
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
     /// A walker that is to stop brings the feet together, provided that the hips need not brake too hard to come to rest above the standing foot; otherwise it
-    /// slows down, and the next step does so. A runner that is to stop slows down within the stance.
+    /// slows down, and the next step does so. A runner that is to stop or to walk slows down within the stance.
     pub(crate) fn remainder_request(
         &self,
         controls: &StepControls,
@@ -132,7 +133,11 @@ impl StepChooser {
         let inside = before.amplitude == Amplitude::WALK;
         let stands = controls.amplitude.to < 1.0;
         let stops = gait == Gait::Walk && inside && stands;
-        let slows = gait == Gait::Run && stands;
+        let slows = if stands {
+            gait == Gait::Run
+        } else {
+            controls.slows_to_walk(gait, *velocity_mps, self.leg_length)
+        };
         if stops && closes {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
@@ -217,7 +222,8 @@ impl StepChooser {
             .of_step(before, velocity_mps, self.leg_length, ends)
     }
 
-    /// Returns the request for a step of this gait, slowing down to stand or, if it is walked and the controls ask for a run, gaining speed.
+    /// Returns the request for a step of this gait, slowing down or, if it is walked and the controls ask for a run, gaining speed. The step with which a runner begins to walk is as long as
+    /// others.
     fn changing(
         &self,
         request: StepRequest,
@@ -225,7 +231,8 @@ impl StepChooser {
         gait: Gait,
         slows: bool,
     ) -> StepRequest {
-        if slows {
+        let walks = gait == Gait::Walk && controls.amplitude.to >= 1.0;
+        if slows && !walks {
             return request.slowing(gait);
         }
         let wanted = controls

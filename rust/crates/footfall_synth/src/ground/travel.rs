@@ -73,6 +73,7 @@ impl Planter {
             }
         }
         self.drift(timing, out);
+        self.brake(timing, course, out);
         self.even(timing, course, out);
         self.thrust(timing, course, out);
         course.displacement.lead(timing, self.leaps(timing), out);
