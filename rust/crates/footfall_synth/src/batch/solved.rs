@@ -148,6 +148,7 @@ pub(crate) fn plant(
             if let Some((_, scale)) = &fine {
                 buffers.add(
                     number as f32 / timing.frames as f32,
+                    1.0,
                     [scale; 2],
                     &mut narrow,
                 );

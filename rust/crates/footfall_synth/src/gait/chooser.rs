@@ -5,7 +5,7 @@ use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::{Pace, PaceTable};
 use super::request::{Manner, Passed, StepControls, StepRequest};
 use super::stand::Amplitude;
-use crate::controls::{FASTEST_RUN_MPS, STANDING_SPEED_MPS};
+use crate::controls::{FASTEST_RUN_MPS, GaitChoice, STANDING_SPEED_MPS};
 use crate::detail::Detail;
 use footfall_core::StepPosition;
 use footfall_core::ease::smooth_step;
@@ -136,7 +136,9 @@ impl StepChooser {
         let slows = if stands {
             gait == Gait::Run
         } else {
-            controls.slows_to_walk(gait, *velocity_mps, self.leg_length)
+            // A follower that has begun to run where the sender walks does not hurry the more.
+            let may_run = controls.gait != GaitChoice::Walk;
+            may_run && controls.slows_to_walk(gait, *velocity_mps, self.leg_length)
         };
         if stops && closes {
             return StepRequest {

@@ -29,11 +29,19 @@ pub(crate) struct Pace {
     pub(crate) stride: f64,
 }
 
+/// Tempo up to which steps have all of their fine motion.
+const UNHURRIED_TEMPO: f64 = 1.3;
+
 impl Pace {
     /// Returns the sum of the differences from another pace, m/s and factors alike.
     pub(crate) fn distance(&self, other: &Self) -> f64 {
         let covariate = (self.covariate_mps - other.covariate_mps).abs();
         covariate + (self.tempo - other.tempo).abs() + (self.stride - other.stride).abs()
+    }
+
+    /// Returns the share of the fine motion in steps of this pace. It goes with the phase of the step, so that the accelerations of a quick one would grow with the square of the tempo.
+    pub(crate) fn fine_share(&self) -> f32 {
+        (UNHURRIED_TEMPO / self.tempo).powi(2).min(1.0) as f32
     }
 
     /// Returns the pace of the same speed with steps that are quicker, and shorter, by this factor.

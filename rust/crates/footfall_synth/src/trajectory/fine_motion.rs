@@ -110,12 +110,12 @@ impl FineBuffers {
         add_noise(&mut self.knots, &self.sources, tables);
     }
 
-    /// Adds the prepared motion to the features of the frame at part `s` of the step. `scales` are those before and after the step.
-    pub(crate) fn add(&self, s: f32, scales: [&Scale; 2], features: &mut [f32]) {
+    /// Adds this share of the prepared motion to the features of the frame at part `s` of the step. `scales` are those before and after the step.
+    pub(crate) fn add(&self, s: f32, share: f32, scales: [&Scale; 2], features: &mut [f32]) {
         let at = s * FINE_POINTS as f32;
         // A cast rounds towards zero, and a part is not below it.
         let cell = (at as usize).min(FINE_POINTS - 1);
-        let weights = catmull_rom(at - cell as f32);
+        let weights = catmull_rom(at - cell as f32).map(|weight| share * weight);
         let knots = &self.knots[cell * FEATURE_COUNT..][..4 * FEATURE_COUNT];
         add_between(features, knots, weights, scales, smooth_step(s));
     }
@@ -270,7 +270,7 @@ mod tests {
 
     fn at(buffers: &FineBuffers, s: f32) -> [f32; FEATURE_COUNT] {
         let mut features = [0.0; FEATURE_COUNT];
-        buffers.add(s, [&SCALE; 2], &mut features);
+        buffers.add(s, 1.0, [&SCALE; 2], &mut features);
         features
     }
 

@@ -9,6 +9,7 @@ use crate::source::buffers::{Change, StepBuffers};
 use crate::source::style_space::Blend;
 use crate::trajectory::{Scale, add_leap, neighbours};
 use footfall_core::StepPosition;
+use footfall_core::ease::smooth_step;
 use footfall_model::FEATURE_COUNT;
 use glam::Vec2;
 
@@ -129,6 +130,8 @@ impl StepWindow {
         let motions = fading
             .into_iter()
             .chain([(now, [scale_before, &now.fine_scale])]);
+        let paces = [self.origin.manner_before, self.origin.request.manner];
+        let [calm_before, calm] = paces.map(|manner| manner.pace.fine_share());
         let length = (shape.timing.frames + 1) * FEATURE_COUNT;
         let shown = &mut shown[..length];
         shown.copy_from_slice(&trajectory[..length]);
@@ -137,8 +140,9 @@ impl StepWindow {
             fine.prepare(tables, shape.timing.leading, &neighbours(&self.plans, step));
             let rows = shown.chunks_exact_mut(FEATURE_COUNT).enumerate();
             for (frame, row) in rows.step_by(shape.detail.stride()) {
-                let phase = Remainder::phase(remainder, frame as f32 / shape.timing.frames as f32);
-                fine.add(phase, scales, row);
+                let part = frame as f32 / shape.timing.frames as f32;
+                let share = calm_before + smooth_step(part) * (calm - calm_before);
+                fine.add(Remainder::phase(remainder, part), share, scales, row);
             }
         }
         if let Some(rise_m) = self.origin.request.leap_m.filter(|_| step == 1) {
