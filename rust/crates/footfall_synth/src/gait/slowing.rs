@@ -31,8 +31,8 @@ impl StepControls {
     pub(super) fn slows_to_walk(&self, before: Gait, velocity_mps: Vec2, leg_length: f32) -> bool {
         let asked = self.velocity_mps;
         let suits = GaitChoice::Auto.of_step(Gait::Run, asked, leg_length, false);
-        let straight = self.turn_rate.abs() < TURNS_RADPS
-            && velocity_mps.angle_to(asked).abs() < TURNS_RAD;
+        let straight =
+            self.turn_rate.abs() < TURNS_RADPS && velocity_mps.angle_to(asked).abs() < TURNS_RAD;
         (before, suits) == (Gait::Run, Gait::Walk)
             && straight
             && self.amplitude == Amplitude::WALK

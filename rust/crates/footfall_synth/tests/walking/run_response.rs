@@ -103,6 +103,40 @@ fn who_stops_from_a_run_takes_quick_steps() {
     assert!(mean < 0.32, "{mean} s from landing to landing");
 }
 
+/// Hips that go as far in a step as the generated leg has them keep the speed of the run over a quick step, lose two thirds of it over the next foot, and gain
+/// some back. O3DE's actor brakes by 2 to 5 m/s² as he stops.
+#[test]
+fn who_slows_down_from_a_run_brakes_evenly() {
+    let skeleton = Skeleton::standard();
+    for (to_mps, least_mps) in [(1.3, 0.95), (0.0, 0.0)] {
+        for seed in 1..13 {
+            let mut walker = generator(Kind::Styled, seed);
+            let before = 150 + 7 * seed as usize;
+            run(&mut walker, &skeleton, &walking(3.2), before);
+            let (frames, _) = run(&mut walker, &skeleton, &walking(to_mps), 75);
+            assert_planted_within(&skeleton, &frames, ROLLING_MPS);
+            // Over a tenth of a second, in which no single frame counts.
+            let secs = 6.0 * DT;
+            let hips = |frame: &Frame| frame.model.position(Joint::Hips).with_y(0.0);
+            let ways = frames
+                .windows(7)
+                .map(|all| hips(&all[0]).distance(hips(&all[6])));
+            let speeds: Vec<f32> = ways.map(|way| way / secs).collect();
+            let slowest = speeds.iter().copied().fold(f32::MAX, f32::min);
+            assert!(
+                slowest >= least_mps,
+                "to {to_mps} m/s, seed {seed}: {slowest} m/s"
+            );
+            let losses = speeds.windows(7).map(|all| (all[0] - all[6]) / secs);
+            let braking = losses.fold(0.0, f32::max);
+            assert!(
+                braking < 8.0,
+                "to {to_mps} m/s, seed {seed}: {braking} m/s²"
+            );
+        }
+    }
+}
+
 #[test]
 fn a_change_in_the_middle_of_a_stance_is_obeyed_without_a_pop() {
     let skeleton = Skeleton::standard();
