@@ -3,6 +3,9 @@
 use super::direction::overstep;
 use glam::Vec2;
 
+/// Tempo up to which steps have all of their fine motion.
+const UNHURRIED_TEMPO: f64 = 1.3;
+
 /// Number of measured paces.
 pub(crate) const SAMPLES: usize = 7;
 
@@ -28,9 +31,6 @@ pub(crate) struct Pace {
     /// Factor on the legs' reach forwards and backwards.
     pub(crate) stride: f64,
 }
-
-/// Tempo up to which steps have all of their fine motion.
-const UNHURRIED_TEMPO: f64 = 1.3;
 
 impl Pace {
     /// Returns the sum of the differences from another pace, m/s and factors alike.
