@@ -108,7 +108,7 @@ fn who_stops_from_a_run_takes_quick_steps() {
 #[test]
 fn who_slows_down_from_a_run_brakes_evenly() {
     let skeleton = Skeleton::standard();
-    for (to_mps, least_mps) in [(1.3, 0.95), (0.0, 0.0)] {
+    for to_mps in [1.3, 0.0] {
         for seed in 1..13 {
             let mut walker = generator(Kind::Styled, seed);
             let before = 150 + 7 * seed as usize;
@@ -122,11 +122,10 @@ fn who_slows_down_from_a_run_brakes_evenly() {
                 .windows(7)
                 .map(|all| hips(&all[0]).distance(hips(&all[6])));
             let speeds: Vec<f32> = ways.map(|way| way / secs).collect();
-            let slowest = speeds.iter().copied().fold(f32::MAX, f32::min);
-            assert!(
-                slowest >= least_mps,
-                "to {to_mps} m/s, seed {seed}: {slowest} m/s"
-            );
+            if to_mps > 0.0 {
+                let slowest = speeds.iter().copied().fold(f32::MAX, f32::min);
+                assert!(slowest >= 0.95, "seed {seed}: {slowest} m/s");
+            }
             let losses = speeds.windows(7).map(|all| (all[0] - all[6]) / secs);
             let braking = losses.fold(0.0, f32::max);
             assert!(
