@@ -3,15 +3,19 @@ extends Node3D
 ##
 ## After `--`: `--host PORT` or `--join PORT`, `--name NAME`, `--secs SECONDS`, and `--lies` for a peer who does. It prints every footstep: `MADE` for its own
 ## character, `SHOWN` for those of others, with the character's name, the foot, its place and the seconds since the character came. The host also walks a crowd,
-## whose members are called `crowd_` and their id.
+## whose members are called `crowd_` and their id. Frames in which the machine stood still are printed as `PAUSED` and their length in seconds.
 
 ## Before it leaves, a peer's character comes to rest.
 const REST_SECS := 2.5
+## Frames from this length on are pauses, once the crowd has walked for a while, seconds. What the engine calls their length is less.
+const PAUSE_SECS := 0.25
+const LOADS_SECS := 1.0
 
 var _arguments := OS.get_cmdline_user_args()
 var _name := ""
 var _left := 0.0
 var _count := 0
+var _frame_msecs := 0
 
 @onready var _spawner := MultiplayerSpawner.new()
 @onready var _walkers := Node3D.new()
@@ -52,6 +56,7 @@ func _ready() -> void:
 
 
 func _process(delta: float) -> void:
+	_notice_pause()
 	_left -= delta
 	for walker: NetWalker in _walkers.get_children():
 		walker.rests = _left < REST_SECS
@@ -64,6 +69,14 @@ func _process(delta: float) -> void:
 		multiplayer.multiplayer_peer.close()
 		get_tree().quit()
 		set_process(false)
+
+
+func _notice_pause() -> void:
+	var now_msecs := Time.get_ticks_msec()
+	var passed_secs := 0.001 * (now_msecs - _frame_msecs)
+	_frame_msecs = now_msecs
+	if _crowd.secs > LOADS_SECS and passed_secs > PAUSE_SECS:
+		print("PAUSED %.3f" % passed_secs)
 
 
 ## A peer has joined and gets a character.

@@ -19,7 +19,7 @@ mod queue;
 mod sender;
 mod update;
 
-pub use clock::ReplicaClock;
+pub use clock::{ReplicaClock, haste};
 pub use error::ReplicaError;
 pub use follower::{Followed, WalkFollower};
 pub use identity::WalkIdentity;

@@ -4,16 +4,17 @@ use anyhow::{Context as _, Result, bail};
 
 /// Footsteps of a character agree on all machines within this, metres.
 const SAME_PLACE_M: f32 = 0.05;
-/// Of so many steps one may be elsewhere: a busy machine pauses at times, and steps that it has not sent are corrected
-/// by the next ones.
+/// Of so many steps one may be elsewhere: networks lose messages, and the next steps correct what was lost.
 const CORRECTED_OF: usize = 20;
+/// So many more for each second in which the maker's or the viewer's machine stood still: what it could not send or show is corrected by later steps.
+const CORRECTED_PER_SEC: f32 = 9.0;
 /// So long after a character has come to a machine its steps agree, seconds.
 const JOINED_SECS: f32 = 2.0;
 /// Walkers of the host's crowd.
 const CROWD: usize = 12;
 /// Steps by which a character is judged at least.
 const LEAST_STEPS: usize = 8;
-/// Hips go no faster than this, m/s: those of a run, and a correction.
+/// Hips go no faster than this, m/s: those of a run, and a correction. Where a machine stood still they may: a walk that is too far from its place begins there anew.
 const FASTEST_MPS: f32 = 7.0;
 /// Distance beyond which a liar's place is refused, metres: farther than a run can reach.
 const FARTHEST_M: f32 = 120.0;
@@ -53,6 +54,7 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
     });
     for (walker, maker, viewer) in characters.into_iter().chain(crowds) {
         let walker = walker.as_str();
+        let paused = paused_secs(of(maker)?)? + paused_secs(of(viewer)?)?;
         let made = steps(of(maker)?, "MADE", walker);
         let shown: Vec<_> = steps(of(viewer)?, "SHOWN", walker)
             .into_iter()
@@ -75,9 +77,10 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
             }
             most = most.max(off);
         }
-        if corrected.len() * CORRECTED_OF > shown.len() {
+        let excused = (CORRECTED_PER_SEC * paused) as usize;
+        if corrected.len().saturating_sub(excused) * CORRECTED_OF > shown.len() {
             bail!(
-                "`{viewer}` shows {} of {} steps of `{walker}` elsewhere than they were made, at {corrected:.2?} m",
+                "`{viewer}` shows {} of {} steps of `{walker}` elsewhere than they were made, at {corrected:.2?} m, where the machines stood still for {paused:.2} s",
                 corrected.len(),
                 shown.len()
             );
@@ -86,7 +89,7 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
         count += shown.len();
     }
     for (viewer, words) in said {
-        judge_end(viewer, words)?;
+        judge_end(viewer, words, said)?;
     }
     if !of("host")?.contains("REFUSED liar") {
         bail!("the host has believed the liar in everything");
@@ -102,8 +105,9 @@ pub(super) fn judge(said: &[(&str, String)]) -> Result<String> {
     ))
 }
 
-/// Judges how the characters went on one machine.
-fn judge_end(viewer: &str, said: &str) -> Result<()> {
+/// Judges how the characters of all peers went on one machine.
+fn judge_end(viewer: &str, said: &str, all: &[(&str, String)]) -> Result<()> {
+    let seen_paused = paused_secs(said)?;
     let mut ends = 0;
     for line in said.lines().filter(|line| line.starts_with("END ")) {
         let words: Vec<&str> = line.split_whitespace().collect();
@@ -111,7 +115,12 @@ fn judge_end(viewer: &str, said: &str) -> Result<()> {
             bail!("`{viewer}` says `{line}`");
         };
         let (hips, far): (f32, f32) = (hips.parse()?, far.parse()?);
-        if walker != "liar" && hips > FASTEST_MPS {
+        let maker = all
+            .iter()
+            .find(|(peer, _)| *peer == walker || (walker == "crowd" && *peer == "host"));
+        let made_paused = maker.map_or(Ok(0.0), |(_, said)| paused_secs(said))?;
+        let all_went_on = seen_paused + made_paused == 0.0;
+        if walker != "liar" && all_went_on && hips > FASTEST_MPS {
             bail!("`{viewer}` has seen the hips of `{walker}` at {hips} m/s");
         }
         // A peer that joins while it lies has no earlier place of it for comparison.
@@ -124,6 +133,13 @@ fn judge_end(viewer: &str, said: &str) -> Result<()> {
         bail!("`{viewer}` has shown no walker");
     }
     Ok(())
+}
+
+/// Time for which the machine of a peer stood still, seconds.
+fn paused_secs(said: &str) -> Result<f32> {
+    let pauses = said.lines().filter_map(|line| line.strip_prefix("PAUSED "));
+    let secs: Vec<f32> = pauses.map(str::parse).collect::<Result<_, _>>()?;
+    Ok(secs.iter().sum())
 }
 
 /// The footsteps of a character in what a peer has said.
@@ -193,12 +209,26 @@ mod tests {
         let mut deaf = game(0.01, true);
         deaf[1].1 = deaf[1].1.replace("STRANGER 5", "");
         assert!(judge(&deaf).is_err(), "a liar who sends the crowd");
+        // Three of 40 steps are too many, unless a machine stood still.
+        let mut late = game(0.01, true);
+        for step in 20..23 {
+            let there = format!("SHOWN crowd_3 left {} ", 0.7 * step as f32 + 0.01);
+            assert!(late[1].1.contains(&there), "{there}");
+            late[1].1 = late[1].1.replace(&there, "SHOWN crowd_3 left 0.3 ");
+        }
+        assert!(judge(&late).is_err(), "three steps that came too late");
+        late[0].1 += "\nPAUSED 0.100\n";
+        assert!(judge(&late).is_err(), "a short pause");
+        late[0].1 += "PAUSED 0.400\n";
+        assert!(judge(&late).unwrap().contains("but for 3"));
         let mut far = game(0.01, true);
         far[1].1 += "END liar hips 2.0 far 4000.0 secs 9.0\n";
         assert!(judge(&far).is_err(), "a liar far away");
         let mut fast = game(0.01, true);
         fast[2].1 += "END host hips 30.0 far 10.0 secs 9.0\n";
         assert!(judge(&fast).is_err(), "a jump");
+        fast[0].1 += "PAUSED 0.600\n";
+        assert!(judge(&fast).is_ok(), "a walk that began anew");
         assert!(judge(&game(0.01, true)[..2]).is_err(), "a peer is missing");
     }
 }

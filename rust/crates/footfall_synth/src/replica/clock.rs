@@ -18,8 +18,22 @@ const LONGEST_SECS: f64 = 0.25;
 /// Weight of a new value.
 const NEWS: f64 = 0.05;
 
+/// Largest relative change of tempo to stay in time, and time in which a delay is made up for, seconds.
+const MOST_HASTE: f64 = 0.12;
+const IN_TIME_SECS: f64 = 0.4;
+
+/// Lead from which a walk slows down further, seconds, and by how much at most: it ends its steps before it has heard of them, elsewhere than a sender whose machine stood still.
+const LEAD_SECS: f64 = 0.1;
+const MOST_WAIT: f64 = 0.2;
+
 /// Silence after which any time counts as later, seconds: half of the range of the ticks.
 pub(super) const HALF_ROUND_SECS: f64 = 120.0;
+
+/// Returns the relative increase of tempo that brings a walk in time that is this late, seconds; negative for one that is ahead.
+pub fn haste(late_secs: f64) -> f64 {
+    let wait = ((late_secs + LEAD_SECS) / IN_TIME_SECS).clamp(-MOST_WAIT, 0.0);
+    (late_secs / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE) + wait
+}
 
 /// Sender's time and ours.
 ///

@@ -2,7 +2,7 @@
 
 mod amended;
 
-use super::clock::ReplicaClock;
+use super::clock::{ReplicaClock, haste};
 use super::gate::Gate;
 use super::led::Beginning;
 use super::numbering::{FRESH_STEPS, next_number};
@@ -14,10 +14,6 @@ use crate::controls::Controls;
 use crate::generator::GaitGenerator;
 use crate::source::Aim;
 use footfall_core::{GroundTransform, Pose};
-
-/// Largest relative change of tempo to stay in time, and time in which a delay is made up for, seconds.
-const MOST_HASTE: f64 = 0.12;
-const IN_TIME_SECS: f64 = 0.4;
 
 /// Errors of place, heading and time beyond which a walk is restarted, metres, radians and seconds.
 const LOST_M: f32 = 0.75;
@@ -260,7 +256,7 @@ impl WalkFollower {
             }
             _ => 0.0,
         };
-        (late / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
+        haste(late)
     }
 
     /// Generates the next step, if there is one.

@@ -4,15 +4,11 @@ use super::following::Following;
 use super::start::Start;
 use super::step::StepUpdate;
 use footfall_core::rotation::wrap_angle;
-use footfall_synth::replica::next_number;
+use footfall_synth::replica::{haste, next_number};
 use footfall_synth::{Controls, CrowdWalker, GroundTransform, LedAim, LedStep};
 
 /// Most steps that wait; a further one drops the oldest.
 const ROOM: usize = 4;
-
-/// Largest share by which a walk speeds up or slows down to keep time, and the time within which it makes up a delay, seconds.
-const MOST_HASTE: f64 = 0.12;
-const IN_TIME_SECS: f64 = 0.4;
 
 /// Greatest distance, in steps, of a received step from the current one for a comparison of their times: without updates a walk may be whole steps ahead or late.
 const NEAR_STEPS: u16 = 2;
@@ -272,7 +268,7 @@ impl LedWalker {
         };
         let mut known = [self.first(), self.made.as_ref()].into_iter().flatten();
         let late_secs = known.find_map(late_secs).unwrap_or(0.0);
-        (late_secs / IN_TIME_SECS).clamp(-MOST_HASTE, MOST_HASTE)
+        haste(late_secs)
     }
 
     /// Returns true if a walker is too far from its place to walk there.
