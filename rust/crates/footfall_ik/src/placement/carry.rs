@@ -16,6 +16,8 @@ pub(super) const EASY_EXTENSION: f32 = 0.98;
 const FIRM_EXTENSION: f32 = 0.995;
 /// Greatest extension of a leg, as a share of its length.
 const MAX_EXTENSION: f32 = 0.999;
+/// Pitch from which a foot has landed on its toes, as in a step backwards, radians: its heel does not rise again.
+const TOES_FIRST_PITCH: f32 = 0.1;
 /// Height below which a foot without a known landing is about to land, metres.
 const SOON_M: f32 = 0.15;
 /// Distance of the soles beyond which they give the grade, metres, and the time within which the grade follows, seconds.
@@ -219,7 +221,7 @@ impl FootPlacer {
                 };
                 // The heel of a foot behind the body can rise; one ahead would only go farther away.
                 let pitch = foot.on_ball(animated[index].pitch);
-                let limit = if pitch < 0.0 {
+                let limit = if pitch < 0.0 || foot.landed_pitch > TOES_FIRST_PITCH {
                     limit(pitch)
                 } else {
                     let risen = limit(MAX_PITCH.max(pitch));

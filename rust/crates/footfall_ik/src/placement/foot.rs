@@ -116,6 +116,8 @@ pub(super) struct Foot {
     pub(super) begun: bool,
     /// True if it was released before the animation lifts it.
     pub(super) let_go_early: bool,
+    /// Pitch with which it landed, heel up, radians; 0 on the ball of the foot, on a tread.
+    pub(super) landed_pitch: f32,
 }
 
 /// The floor of the animation, the ground, and how a foot meets it.
@@ -192,6 +194,7 @@ impl Default for Foot {
             at_lock: Residual::NONE,
             begun: false,
             let_go_early: false,
+            landed_pitch: 0.0,
         }
     }
 }
@@ -317,6 +320,7 @@ impl Foot {
         self.plan = None;
         self.let_go(Mode::Locked);
         self.hold = Some(hold);
+        self.landed_pitch = if hold.on_ball { 0.0 } else { animated.pitch };
         self.locked_with = Correction::between(&animated.flat, &sole);
     }
 

@@ -158,7 +158,6 @@ pub(crate) fn plant(
         GeneratedFrame::fill(&mut generated, &frames, skeleton, |_| Stride {
             scale: f32x8::splat(stride),
             upright: f32x8::ONE,
-            tall: f32x8::ONE,
         });
         begin += timing.frames;
         course.step_secs = (timing.frames as f64 * frame_secs) as f32;

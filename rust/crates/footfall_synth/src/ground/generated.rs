@@ -24,8 +24,6 @@ pub(crate) struct Stride {
     pub(crate) scale: f32x8,
     /// Straightness of landing and standing legs.
     pub(crate) upright: f32x8,
-    /// Share of the legs' length that is kept: with 1 shorter strides raise the hips, with 0 the height stays.
-    pub(crate) tall: f32x8,
 }
 
 /// Lowering of the feet in eight frames of short strides.
@@ -153,11 +151,7 @@ impl GeneratedFrame {
     ) {
         let blocks = frames.chunks_mut(LANES).zip(poses.chunks(LANES));
         for (block, (frames, poses)) in blocks.enumerate() {
-            let Stride {
-                scale,
-                upright,
-                tall,
-            } = stride(block * LANES);
+            let Stride { scale, upright } = stride(block * LANES);
             let of_poses = |joint: Joint| {
                 Quatx8::gather(|lane| poses[lane.min(poses.len() - 1)].as_ref().rotation(joint))
             };
@@ -183,7 +177,7 @@ impl GeneratedFrame {
                     foot = lowering.flattened(foot, &mut free_pitch);
                 }
                 let height = (squared - x * x - z * z).fast_max(squared * LEAST_HEIGHT);
-                let y = reach.y - (height.sqrt() + reach.y) * tall;
+                let y = -height.sqrt();
                 let ankle = hip + Vec3x8 { x, y, z };
                 let foot = foot.lanes();
                 for (lane, frame) in frames.iter_mut().enumerate() {
@@ -242,7 +236,6 @@ mod tests {
         let stride = Stride {
             scale: f32x8::splat(1.25),
             upright: f32x8::ONE,
-            tall: f32x8::ONE,
         };
         GeneratedFrame::fill(&mut frames, &poses, &skeleton, |_| stride);
         for (frame, pose) in frames.iter().zip(&poses) {

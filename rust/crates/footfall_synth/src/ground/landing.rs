@@ -67,12 +67,11 @@ impl Planter {
     /// Fraction of the straight leg with which a foot lands at most.
     pub(super) fn landing_extension(&self) -> f32 {
         let strafe = &self.state.strafe;
-        let backwards = (-strafe.forwardness).max(0.0);
         let fall = self.state.hips_velocity.map_or(0.0, |velocity| -velocity.y);
         let bent = LANDING_BY_FALL * (fall - EASY_FALL_MPS).clamp(0.0, EASY_FALL_MPS)
             + LANDING_BY_HARD_FALL * (fall - HARD_FALL_MPS).max(0.0);
         LANDING_EXTENSION + LANDING_FORWARDS * strafe.uprightness()
-            - LANDING_BACKWARDS * backwards
+            - LANDING_BACKWARDS * strafe.backwardness()
             - bent
     }
 

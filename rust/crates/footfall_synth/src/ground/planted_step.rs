@@ -146,7 +146,6 @@ impl PlantedStep {
             Stride {
                 scale: between(stride_before, stride),
                 upright: between(before.uprightness(), strafe.uprightness()),
-                tall: between(before.tallness(), strafe.tallness()),
             }
         });
         let [_, facing] = placing.facing;

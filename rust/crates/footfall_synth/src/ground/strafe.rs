@@ -19,8 +19,8 @@ use glam::{Quat, Vec2, Vec3};
 use serde::{Deserialize, Serialize};
 pub(crate) use turner::Turner;
 
-/// Largest factor by which steps are lengthened to their intended length.
-const MOST_LENGTHENED: f32 = 1.8;
+/// Largest factors by which steps to the side and backwards are lengthened to their intended length. Backwards, the first step after a walk forwards would be a lunge.
+const MOST_LENGTHENED: [f32; 2] = [1.8, 1.15];
 
 /// Likeness to a walk forwards, less than 1, from which steps are lengthened in full.
 const ASIDE: f32 = 0.1;
@@ -95,7 +95,9 @@ impl Strafe {
         if let Some(wanted_m) = wanted_m
             && flat_m > 0.0
         {
-            let longer = (wanted_m / flat_m).clamp(1.0, MOST_LENGTHENED) - 1.0;
+            let [side, back] = MOST_LENGTHENED;
+            let most = side + self.backwardness() * (back - side);
+            let longer = (wanted_m / flat_m).clamp(1.0, most) - 1.0;
             let aside = smooth_step((1.0 - self.forwardness) / ASIDE);
             let factor = 1.0 + aside * longer;
             self.reach = self.reach.map(|axis| axis * factor);
@@ -103,14 +105,14 @@ impl Strafe {
         self
     }
 
-    /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, over bent knees in steps to the side and backwards.
+    /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, less in steps to the side and backwards.
     pub(crate) fn uprightness(&self) -> f32 {
         self.forwardness.max(0.0).powi(2)
     }
 
-    /// Share of the legs' length that is kept in short strides, from 0 to 1: people walk backwards over bent knees.
-    pub(crate) fn tallness(&self) -> f32 {
-        1.0 - self.forwardness.min(0.0).powi(2)
+    /// Likeness to a walk backwards, from 0 to 1.
+    pub(crate) const fn backwardness(&self) -> f32 {
+        (-self.forwardness).max(0.0)
     }
 
     /// Returns all values.

@@ -30,6 +30,11 @@ const REACH_RELEASE_SECS: f32 = 0.05;
 /// share of the leg's length.
 const RELEASE_SHARE: f32 = 0.03;
 
+/// Shares of the straight leg beyond which a leaving foot is released in steps forwards, whose heels rise, and in steps backwards, whose leaving leg is ahead and would draw the hips down; and the
+/// likeness to a walk backwards from which on it is the second.
+const LEAVING_EXTENSION: [f32; 2] = [1.1, 0.985];
+const LEAVES_BACKWARDS: f32 = 0.67;
+
 /// Share of the leg's length by which a foot is ahead of its hip while its heel bears, toes up, and the greatest pitch by which they are up there, radians. Behind the hip no heel bears: such
 /// a foot lies flat, and its heel can rise.
 const HEEL_BEARS_AHEAD: f32 = 0.1;
@@ -91,7 +96,11 @@ impl Planter {
         frames: &[PlantedFrame],
     ) -> usize {
         let trailing = timing.leading.other();
-        let allowance = RELEASE_SHARE * self.leg_lengths[trailing.index()];
+        let length = self.leg_lengths[trailing.index()];
+        let allowance = RELEASE_SHARE * length;
+        let [forwards, backwards] = LEAVING_EXTENSION;
+        let share = (self.state.strafe.backwardness() / LEAVES_BACKWARDS).min(1.0);
+        let reach = length * (forwards + share * (backwards - forwards));
         (2..=timing.terminal)
             .find(|index| {
                 let frame = &frames[*index];
@@ -101,8 +110,10 @@ impl Planter {
                     frame.pose.root_position,
                     frame.level,
                 );
-                let ankle = generated[*index].legs[trailing.index()].target.ankle;
-                free.ankle.distance(ankle) > allowance
+                let leg = &generated[*index].legs[trailing.index()];
+                let ankle = leg.target.ankle;
+                let hip = frame.pose.root_position + frame.level * leg.hip;
+                free.ankle.distance(ankle) > allowance || hip.distance(ankle) > reach
             })
             .map_or(timing.terminal, |beyond| beyond - 1)
     }

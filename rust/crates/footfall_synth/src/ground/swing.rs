@@ -45,7 +45,8 @@ const BRAKING_SECS: [f32; 2] = [0.16, 0.1];
 const SWING_EXTENSION: f32 = 0.9985;
 const FLYING_EXTENSIONS: [f32; 2] = [0.965, 0.99];
 
-/// Decrease of those shares, and of the share of a landing leg, as a foot leaves the ground aside or behind: its leg would straighten and bend again within frames.
+/// Decrease of those shares, and of the share of a landing leg, as a foot leaves the ground aside or behind: its leg would straighten and bend again within frames. Not for a foot that is in
+/// the air as its step is planned anew, for its leg may be straight already.
 const LEAVING_ASIDE: [f32; 2] = [0.03, 0.0135];
 
 /// Difference between planted and generated foot, from the last frame of one stance to the first of the next.
@@ -234,7 +235,12 @@ impl Planter {
         } else {
             [self.landing_extension(), SWING_EXTENSION]
         };
-        let leaving = LEAVING_ASIDE.map(|share| share * (1.0 - self.state.strafe.uprightness()));
+        let aside = if swing.freed_after > 0.0 {
+            1.0 - self.state.strafe.uprightness()
+        } else {
+            0.0
+        };
+        let leaving = LEAVING_ASIDE.map(|share| share * aside);
         let end = within.end;
         for index in within.step_by(LANES) {
             let at = |lane: usize| (index + lane).min(end - 1);

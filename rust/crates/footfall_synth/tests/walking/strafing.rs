@@ -176,6 +176,44 @@ fn sidesteps_are_upright() {
     }
 }
 
+/// Of Bandai's actors who walk backwards at 1.1 to 1.2 m/s ankles come as far ahead of the hips as behind them, and half of the time knees are bent by less than 23° to 35°.
+#[test]
+fn walks_backwards_are_upright() {
+    let skeleton = Skeleton::standard();
+    for speed in [0.5, 1.2] {
+        let controls = going(PI, speed);
+        let (mut knees, mut heights, mut ahead) = (Vec::new(), Vec::new(), Vec::new());
+        for seed in 1..9 {
+            let mut walker = generator(Kind::Styled, seed);
+            run(&mut walker, &skeleton, &controls, 200);
+            for frame in run(&mut walker, &skeleton, &controls, 400).0 {
+                heights.push(frame.model.position(Joint::Hips).y);
+                let [left, right] = Side::BOTH.map(|side| frame.model.position(side.upper_leg()));
+                let forwards = (left - right).cross(Vec3::Y).normalize();
+                for side in Side::BOTH {
+                    knees.push(knee(&frame, side));
+                    let leg =
+                        frame.model.position(side.foot()) - frame.model.position(side.upper_leg());
+                    ahead.push(leg.dot(forwards));
+                }
+            }
+        }
+        for all in [&mut knees, &mut heights, &mut ahead] {
+            all.sort_by(f32::total_cmp);
+        }
+        let at = |all: &[f32], share: f32| all[(share * (all.len() - 1) as f32) as usize];
+        let (knee, lowest) = (at(&knees, 0.5), at(&heights, 0.02));
+        let middle = 0.5 * (at(&ahead, 0.01) + at(&ahead, 0.99));
+        println!("{speed} m/s: knees {knee}°, hips {lowest} m, feet {middle} m ahead");
+        assert!(
+            knee < 33.0,
+            "{speed} m/s: half of the time knees of {knee}°"
+        );
+        assert!(lowest > 0.92, "{speed} m/s: hips at {lowest} m");
+        assert!(middle.abs() < 0.05, "{speed} m/s: feet {middle} m ahead");
+    }
+}
+
 #[test]
 fn hips_stay_up_when_the_direction_changes() {
     let skeleton = Skeleton::standard();

@@ -12,7 +12,6 @@ fn upright(skeleton: &Skeleton) -> [GeneratedFrame; 2] {
     let stride = Stride {
         scale: f32x8::ONE,
         upright: f32x8::ONE,
-        tall: f32x8::ONE,
     };
     GeneratedFrame::fill(&mut frames, &poses, skeleton, |_| stride);
     frames

@@ -41,6 +41,10 @@ const LIFTED_BY: f32 = 0.35;
 /// Part of the rest of a swing over which a foot in the air takes its new direction.
 const REDIRECTED_BY: f32 = 0.85;
 
+/// Share of the way from the ankle to the middle of the sole at which is, in steps backwards, what is as far ahead of the hips as behind them: toes land behind, and the leg that leaves
+/// ahead is nearly straight. Of four people of Bandai who walk backwards at 1.1 to 1.2 m/s it is the ankle, 0.32 m behind and 0.33 ahead.
+const BACKWARD_MIDDLE: f32 = 0.3;
+
 /// Joints that turn the trunk back to the facing direction.
 const BACK: [Joint; 3] = [Joint::Spine, Joint::Chest, Joint::UpperChest];
 
@@ -201,9 +205,10 @@ impl Turner<'_> {
     }
 
     /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is about as far
-    /// ahead of the hips as behind them in any walk.
+    /// ahead of the hips as behind them in walks forwards and to the side; backwards, that of a point nearer to the ankle.
     fn turn_place(&self, strafe: &Strafe, side: Side, ankle: Vec3) -> Vec3 {
-        let middle = self.feet[side.index()].sole_middle();
+        let share = 1.0 + strafe.backwardness() * (BACKWARD_MIDDLE - 1.0);
+        let middle = share * self.feet[side.index()].sole_middle();
         let place = from_heading(self.own_facing) * ankle + middle;
         let out = match side {
             Side::Left => strafe.widening,
