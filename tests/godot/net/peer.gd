@@ -7,7 +7,7 @@ extends Node3D
 
 ## Before it leaves, a peer's character comes to rest.
 const REST_SECS := 2.5
-## Frames from this length on are pauses, once the crowd has walked for a while, seconds. What the engine calls their length is less.
+## Shortest pause of the machine, and the time of the crowd before which it still loads, seconds. The engine's own delta is limited and shows no pause.
 const PAUSE_SECS := 0.25
 const LOADS_SECS := 1.0
 

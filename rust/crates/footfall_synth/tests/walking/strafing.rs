@@ -176,7 +176,7 @@ fn sidesteps_are_upright() {
     }
 }
 
-/// Of Bandai's actors who walk backwards at 1.1 to 1.2 m/s ankles come as far ahead of the hips as behind them, and half of the time knees are bent by less than 23° to 35°.
+/// Ankles of Bandai's actors who walk backwards at 1.1 to 1.2 m/s go as far ahead of the hips as behind them. Half of the time their knees are bent by less than 23° to 35°.
 #[test]
 fn walks_backwards_are_upright() {
     let skeleton = Skeleton::standard();

@@ -41,8 +41,8 @@ const LIFTED_BY: f32 = 0.35;
 /// Part of the rest of a swing over which a foot in the air takes its new direction.
 const REDIRECTED_BY: f32 = 0.85;
 
-/// Share of the way from the ankle to the middle of the sole at which is, in steps backwards, what is as far ahead of the hips as behind them: toes land behind, and the leg that leaves
-/// ahead is nearly straight. Of four people of Bandai who walk backwards at 1.1 to 1.2 m/s it is the ankle, 0.32 m behind and 0.33 ahead.
+/// Share of the way from the ankle to the middle of the sole: the point about which steps backwards are mirrored. Toes land behind, and the leg that leaves ahead is nearly straight. Ankles of four
+/// of Bandai's actors who walk backwards at 1.1 to 1.2 m/s go from 0.32 m behind the hips to 0.33 m ahead.
 const BACKWARD_MIDDLE: f32 = 0.3;
 
 /// Joints that turn the trunk back to the facing direction.
