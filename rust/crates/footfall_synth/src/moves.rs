@@ -91,6 +91,12 @@ impl Moves {
         self.push.push(velocity);
     }
 
+    /// Returns the part of a push that has not reached the hips yet, m/s, if there is one.
+    pub(crate) fn coming(&self) -> Option<[f32; 2]> {
+        let coming = self.push.coming;
+        (coming != Vec2::ZERO).then(|| coming.to_array())
+    }
+
     /// Sets the grade of the way.
     pub(crate) fn climb(&mut self, grade: f32) {
         self.climb.go_on(grade);

@@ -147,8 +147,8 @@ impl GaitGenerator {
         }
     }
 
-    /// Pushes the walker by a change of velocity, m/s, to its left and forwards: an impulse over the mass of the body. The body sways over its feet and
-    /// returns; a push of more than 0.3 m/s is followed by steps in its direction, out of standing and while walking. More than 2 m/s, which would throw people over, counts as 2 m/s.
+    /// Pushes the walker by a change of velocity, m/s, to its left and forwards: an impulse over the mass of the body. The body gives way within a tenth of a second, trunk
+    /// first and hands last, sways over its feet and returns; a push of more than 0.3 m/s is followed by steps in its direction, out of standing and while walking. More than 2 m/s, which would throw people over, counts as 2 m/s.
     ///
     /// A push that is not finite, in a two-footed jump, or with a switching model has no effect.
     pub fn push(&mut self, velocity_mps: Vec2) {

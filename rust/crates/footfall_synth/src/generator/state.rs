@@ -17,6 +17,7 @@ use crate::config::GeneratorConfig;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::gait::Amplitude;
+use crate::moves::Moves;
 use crate::source::Steps;
 use crate::standing::Moment;
 use climbing::Climbing;
@@ -31,11 +32,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Version of the layout that this build writes, and the oldest that it reads.
-const VERSION: u8 = 12;
+const VERSION: u8 = 13;
 const OLDEST: u8 = 4;
 
 /// Versions from which states have standing motion, running, steps that change in their middle and jumps, balance, climbs, corrections of the way, pending jumps from
-/// the start of the walk rather than from the character, and legs that lean against changes of speed.
+/// the start of the walk rather than from the character, legs that lean against changes of speed, and pushes that build up.
 const STANDING: u8 = 5;
 const RUNNING: u8 = 6;
 const MOVING: u8 = 7;
@@ -44,6 +45,7 @@ const CLIMBING: u8 = 9;
 const LED: u8 = 10;
 const JUMPS_FROM_START: u8 = 11;
 const LEGS_LEAN: u8 = 12;
+const PUSHES_BUILD_UP: u8 = 13;
 
 /// Limit of all numbers of a state: metres, radians, frames and factors.
 const MAX_VALUE: f64 = 1e7;
@@ -233,6 +235,7 @@ impl GaitGenerator {
             Climbing::of(self),
             Led::of(self),
             planter.map_or(0.0, |feet| feet.lean.leg),
+            self.moves.as_ref().and_then(Moves::coming),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -258,6 +261,7 @@ impl GaitGenerator {
         let climbing: Climbing = parts.next(CLIMBING, Climbing::default())?;
         let led: Led = parts.next(LED, Led::default())?;
         let leg: f32 = parts.next(LEGS_LEAN, 0.0)?;
+        let coming: Option<[f32; 2]> = parts.next(PUSHES_BUILD_UP, None)?;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -269,6 +273,7 @@ impl GaitGenerator {
             balance
                 .into_iter()
                 .chain([leg])
+                .chain(coming.into_iter().flatten())
                 .map(f64::from)
                 .all(is_reasonable),
         ];
@@ -310,7 +315,11 @@ impl GaitGenerator {
         self.position = state.position.clamp(0.0, frames);
         climbing.resume(self);
         self.tell_place();
-        moving.resume(self, state.version < JUMPS_FROM_START);
+        moving.resume(
+            self,
+            coming.unwrap_or_default().into(),
+            state.version < JUMPS_FROM_START,
+        );
         Ok(())
     }
 }

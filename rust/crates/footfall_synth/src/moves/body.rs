@@ -1,5 +1,6 @@
 //! Body whose posture changes over feet with their own places.
 
+use footfall_core::ease::soft_min;
 use footfall_core::rotation::exp_map;
 use footfall_core::{Joint, Pose, Side, Skeleton};
 use footfall_ik::{
@@ -132,14 +133,20 @@ impl Body {
         })
     }
 
-    /// Lowers the hips of a pose until no leg is stretched beyond a limit.
-    pub(super) fn lower_to(&self, pose: &mut Pose, targets: &[FootTarget; 2], stretched: [f32; 2]) {
+    /// Lowers the hips of a pose until no leg is stretched beyond a limit; heights nearer to it than a few times `softness`, metres, count in part.
+    pub(super) fn lower_to(
+        &self,
+        pose: &mut Pose,
+        targets: &[FootTarget; 2],
+        stretched: [f32; 2],
+        softness: f32,
+    ) {
         for side in 0..2 {
             let hip = pose.rotation(Joint::Hips) * self.hip_from_hips[side];
             let (ankle, length) = (targets[side].ankle, self.leg_lengths[side]);
             let limit = reach_height(pose.root_position, hip, ankle, length, stretched[side]);
             let height = &mut pose.root_position.y;
-            *height = limit.map_or(*height, |limit| height.min(limit));
+            *height = limit.map_or(*height, |limit| soft_min(*height, limit, softness));
         }
     }
 

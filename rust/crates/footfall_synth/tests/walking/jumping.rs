@@ -318,38 +318,3 @@ fn a_jumper_goes_on_from_a_saved_state_bit_for_bit() {
         }
     }
 }
-
-#[test]
-fn a_soft_push_is_stood_and_a_hard_one_stepped_off() {
-    let skeleton = Skeleton::standard();
-    for (seed, push, steps) in [
-        (1, Vec2::new(0.15, 0.1), false),
-        (2, Vec2::new(0.0, 0.9), true),
-        (3, Vec2::new(0.8, 0.0), true),
-        (4, Vec2::new(0.0, -0.8), true),
-        (5, Vec2::new(-1.0, 0.5), true),
-    ] {
-        let mut generator = stander(seed);
-        let (before, _) = run(&mut generator, &skeleton, &Controls::STAND, 20);
-        generator.push(push);
-        let (frames, footsteps) = run(&mut generator, &skeleton, &Controls::STAND, 300);
-        assert_eq!(!footsteps.is_empty(), steps, "{push} m/s: {footsteps:?}");
-        let level = |frame: &Frame| frame.model.position(Joint::Hips).with_y(0.0);
-        let farthest = frames
-            .iter()
-            .map(|frame| (level(frame) - level(&before[19])).dot(Vec3::new(push.x, 0.0, push.y)))
-            .fold(0.0, f32::max)
-            / push.length();
-        assert!((0.005..1.5).contains(&farthest), "{farthest} m for {push}");
-        assert!(generator.is_standing(), "{push} m/s leaves it walking");
-        assert_planted_within(&skeleton, &frames, 0.02);
-        assert_smooth(&frames, 0.036);
-        let came_back = (hips(&frames[299]) - hips(&before[19])).abs();
-        assert!(came_back < 0.01, "{came_back} m lower in the end");
-    }
-    let mut generator = stander(1);
-    let mut pose = Pose::default();
-    generator.push(Vec2::new(f32::NAN, 1.0));
-    generator.step(DT, &Controls::STAND, &mut pose);
-    assert!(pose.root_position.is_finite() && generator.is_standing());
-}

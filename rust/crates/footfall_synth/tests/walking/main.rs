@@ -7,6 +7,7 @@ mod climbing;
 mod jumping;
 mod leaning;
 mod leaping;
+mod pushed;
 mod quick;
 mod run_response;
 mod run_up;

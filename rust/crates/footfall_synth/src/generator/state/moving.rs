@@ -47,8 +47,9 @@ impl Moving {
         }
     }
 
-    /// Restores the moves of a walker; the place of a pending jump may be relative to the character, as it was in earlier versions.
-    pub(super) fn resume(&self, generator: &mut GaitGenerator, is_seen: bool) {
+    /// Restores the moves of a walker, with the part of a push that has not reached the hips; the place of a pending jump may be relative to the
+    /// character, as it was in earlier versions.
+    pub(super) fn resume(&self, generator: &mut GaitGenerator, coming: Vec2, is_seen: bool) {
         generator.pending_jump = self.asked.map(|[rise_m, x, y, z]| {
             let place = Vec3::new(x, y, z);
             PendingJump {
@@ -66,6 +67,7 @@ impl Moving {
             let [velocity, away, swing] = self.push.unwrap_or_default().map(Vec2::from);
             let push = PushMoment {
                 velocity,
+                coming,
                 away,
                 speed: swing,
             };
