@@ -20,8 +20,10 @@ const LAST_SECS: f64 = 0.39;
 const PIVOT_RADPS: [f32; 2] = [1.5, 2.5];
 const PIVOT_SECS: f64 = 0.45;
 
-/// Maximum speed at the end of a first step, m/s.
+/// Maximum speeds at the end of a first step forwards, and of one to the side or backwards, m/s. People reach no speed within 0.2 s, and who is carried that fast aside or
+/// backwards has the other foot too far behind to follow.
 const FIRST_MPS: f32 = 2.0;
+const FIRST_ASIDE_MPS: f32 = 1.1;
 
 /// Maximum speed of the remainder of a replanned step, m/s.
 const REST_MOST_MPS: f32 = 2.0;
@@ -75,12 +77,8 @@ impl StepChooser {
         let slows = slows || controls.slows_to_walk(gait_before, *velocity_mps, self.leg_length);
         let sets_out = amplitude.from < 1.0 && amplitude.to >= 1.0;
         if sets_out {
-            let most = if self.run.is_some() {
-                FIRST_MPS
-            } else {
-                FASTEST_WALK_MPS
-            };
-            *velocity_mps = controls.velocity_mps.clamp_length_max(most);
+            let asked = controls.velocity_mps;
+            *velocity_mps = asked.clamp_length_max(self.first_step_mps(asked));
         } else if amplitude.to >= 1.0 {
             let most = gait_before.most_change_mps(slows);
             *velocity_mps = controls.velocity_within(*velocity_mps, most);
@@ -110,6 +108,17 @@ impl StepChooser {
             leap_m: controls.leap_m,
         };
         (self.changing(request, controls, gait, slows), gait)
+    }
+
+    /// Returns the maximum speed at the end of a first step in the direction of a velocity, m/s.
+    fn first_step_mps(&self, velocity_mps: Vec2) -> f32 {
+        let forwards = if self.run.is_some() {
+            FIRST_MPS
+        } else {
+            FASTEST_WALK_MPS
+        };
+        let aside = smooth_step(1.0 - velocity_mps.normalize_or(Vec2::Y).y);
+        forwards + aside * (FIRST_ASIDE_MPS - forwards)
     }
 
     /// Returns the request for the remainder of a step when the controls change within it. `before` is its request. The remainder takes no longer than planned.
