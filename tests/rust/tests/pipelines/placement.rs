@@ -5,7 +5,7 @@ use footfall_core::{Side, Skeleton};
 use footfall_ik::placement::{Frame, PlacementConfig};
 use footfall_synth::Controls;
 use footfall_tests::terrain::{PlacedWalker, Relief};
-use footfall_tests::walkers;
+use footfall_tests::walkers::{self, most_acceleration};
 use glam::{Quat, Vec3};
 
 const DT: f32 = 1.0 / 60.0;
@@ -172,6 +172,37 @@ fn sidesteps_and_steps_backwards_keep_their_feet_on_a_slope() {
         let what = format!("{direction} rad");
         test.on(|x, z| 0.2 * z - 0.1 * x)
             .expect(&what, KNEE_ON_SLOPES);
+    }
+}
+
+/// A foot that is left below raises its heel as the body goes up, and is then not set back on it: bodies fell by 8 cm in a frame.
+#[test]
+fn hips_do_not_fall_on_steps_taken_aside_and_backwards() {
+    for (direction, speed_mps) in [(FRAC_PI_2, 0.6), (PI, 0.8)] {
+        for seed in 1..13 {
+            let from = 1.0 + 0.07 * seed as f32;
+            let (aside, ahead) = direction.sin_cos();
+            let mut terrain = Relief::still(move |x, z| {
+                let way = x * aside + z * ahead - from;
+                stairs(way + 0.3, 0.17, 0.3)
+            });
+            let mut walker = walker(seed);
+            walker.generator.stand();
+            let controls = Controls {
+                speed_mps,
+                direction_rad: direction,
+                ..Controls::STAND
+            };
+            let hips: Vec<Vec3> = (0..600)
+                .map(|_| {
+                    walker.climb(DT, controls, &mut terrain, true);
+                    walker.hips()
+                })
+                .collect();
+            assert!(hips[599].y > 1.3, "{direction}, seed {seed}: it climbed");
+            let most = most_acceleration(&hips);
+            assert!(most < 60.0, "{direction}, seed {seed}: {most} m/s²");
+        }
     }
 }
 

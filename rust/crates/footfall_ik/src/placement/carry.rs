@@ -1,11 +1,12 @@
 //! Height of the pelvis: above the ground under it, within the reach of the legs.
 
 use crate::leg::{FootTarget, reach_height};
-use crate::placement::foot::{Animated, Ankle, Foot, MAX_PITCH, Mode, Scene};
+use crate::placement::foot::{Animated, Ankle, Foot, Mode, Scene};
 use crate::placement::frame::Frame;
 use crate::placement::pelvis::plane_height;
 use crate::placement::terrain::Terrain;
 use crate::placement::{FootPlacer, PlacementInput};
+use crate::rocker::foot_pitch;
 use footfall_core::ease::smooth_step;
 use footfall_core::{Joint, Pose, Side};
 use glam::{Quat, Vec3};
@@ -104,12 +105,14 @@ impl FootPlacer {
             let (length, rocker) = (self.leg_lengths[index], &self.rockers[index]);
             let reach = stretch.clamp(firm, MAX_EXTENSION) * length;
             let (foot, animated) = (&mut self.feet[index], &animated[index]);
+            let pitch = foot_pitch(target.foot);
             let short = |foot: &FootTarget| foot.ankle.distance(hip) - reach;
             foot.rise(rocker, animated, short, target);
             let ankle = Ankle::below(&self.legs[index], hip, &animated.foot, animated_hip);
             if reaches_down[1 - index] {
                 foot.rise(rocker, animated, |foot| ankle.excess(foot), target);
             }
+            foot.raised = foot_pitch(target.foot) - pitch;
             if foot.mode != Mode::Locked {
                 let (easy, most) = (stretch.max(EASY_EXTENSION) * length, MAX_EXTENSION * length);
                 target.ankle = hip + yielded(target.ankle - hip, easy, most);
@@ -221,10 +224,10 @@ impl FootPlacer {
                 };
                 // The heel of a foot behind the body can rise; one ahead would only go farther away.
                 let pitch = foot.on_ball(animated[index].pitch);
-                let limit = if pitch < 0.0 || foot.landed_pitch > TOES_FIRST_PITCH {
+                let limit = if foot.landed_pitch > TOES_FIRST_PITCH {
                     limit(pitch)
                 } else {
-                    let risen = limit(MAX_PITCH.max(pitch));
+                    let risen = limit(foot.highest_pitch(pitch));
                     limit(pitch).map_or(risen, |flat| {
                         risen.map(|risen| risen.max(flat)).or(Some(flat))
                     })

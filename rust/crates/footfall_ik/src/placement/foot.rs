@@ -118,6 +118,8 @@ pub(super) struct Foot {
     pub(super) let_go_early: bool,
     /// Pitch with which it landed, heel up, radians; 0 on the ball of the foot, on a tread.
     pub(super) landed_pitch: f32,
+    /// Pitch by which its heel was raised in the last frame, radians.
+    pub(super) raised: f32,
 }
 
 /// The floor of the animation, the ground, and how a foot meets it.
@@ -195,6 +197,7 @@ impl Default for Foot {
             begun: false,
             let_go_early: false,
             landed_pitch: 0.0,
+            raised: 0.0,
         }
     }
 }
@@ -364,6 +367,8 @@ impl Foot {
     /// Pitch on the foothold for a foot at this pitch: a heel without ground under it does not land first, and one that landed after its toes
     /// comes down.
     pub(super) fn on_ball(&self, pitch: f32) -> f32 {
+        // A foot whose heel is up does not roll back onto it.
+        let pitch = pitch - self.share_raised() * pitch.min(0.0);
         let Some(hold) = self.hold.filter(|hold| hold.on_ball) else {
             return pitch;
         };
