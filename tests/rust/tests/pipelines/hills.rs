@@ -4,6 +4,7 @@ use footfall_core::{Side, Skeleton};
 use footfall_synth::Controls;
 use footfall_tests::climb::{BODIES, Climb, DT, Outcome, Way, percentile, walker};
 use footfall_tests::terrain::Relief;
+use footfall_tests::walkers::most_acceleration;
 use glam::Vec3;
 
 /// Distance to the ground that is not level, metres: the run has its speed by then.
@@ -161,6 +162,44 @@ fn no_foot_jumps_when_a_step_is_planned_anew() {
         for (way, most_m) in [(Way::Level, 0.08), (hills, 0.08), (blocks, 0.2)] {
             let jump = jump_of_the_restless(way, seed);
             assert!(jump < most_m, "{way:?}, seed {seed}: {jump} m");
+        }
+    }
+}
+
+/// A runner's foot is high in the middle of its way anyway, and toes that point straight down point neither ahead nor back.
+#[test]
+fn kerbs_are_run_over_without_a_kick() {
+    for (body, height_m, speed_mps) in [(0.65, 0.15, 3.2), (0.65, 0.1, 3.2), (1.0, 0.23, 4.0)] {
+        let skeleton = Skeleton::standard().scaled(body);
+        for seed in 1..11 {
+            let from = 1.0 + 0.37 * seed as f32 % 1.0;
+            let mut terrain = Relief::still(move |_, z| {
+                let way = z - from;
+                if way > 0.0 && way.rem_euclid(4.0) < 2.0 {
+                    height_m
+                } else {
+                    0.0
+                }
+            });
+            let mut walker = walker(&skeleton, seed);
+            walker.generator.stand();
+            let controls = Controls {
+                speed_mps,
+                ..Controls::STAND
+            };
+            let mut toes = Side::BOTH.map(|_| vec![]);
+            for _ in 0..600 {
+                walker.climb(DT, controls, &mut terrain, true);
+                for side in Side::BOTH {
+                    toes[side.index()].push(walker.world.position(side.toes()));
+                }
+            }
+            let most = toes.map(|places| most_acceleration(&places)).into_iter();
+            let most = most.fold(0.0, f32::max) / body;
+            assert!(
+                most < 450.0,
+                "body {body}, {height_m} m, seed {seed}: {most} m/s²"
+            );
         }
     }
 }

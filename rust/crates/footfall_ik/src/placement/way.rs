@@ -85,6 +85,14 @@ impl Way {
         }
     }
 
+    /// The same way with this share of its lift.
+    pub(super) fn lifted(self, share: f32) -> Self {
+        Self {
+            lift_m: share * self.lift_m,
+            ..self
+        }
+    }
+
     /// The correction at this part of the swing, and how much the foot is lifted there. Over even ground the foot rises and sinks as it goes.
     pub(super) fn at(
         self,

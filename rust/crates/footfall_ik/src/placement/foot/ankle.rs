@@ -2,7 +2,7 @@
 
 use super::{Foot, Mode};
 use crate::leg::{FootTarget, Leg};
-use crate::rocker::foot_pitch;
+use crate::rocker::foot_attitude;
 use footfall_core::ease::smooth_step;
 use glam::{Quat, Vec3};
 
@@ -36,7 +36,7 @@ impl<'a> Ankle<'a> {
             hip: animated_hip,
             animated: 0.0,
         };
-        let flexion = in_animation.lean(animated) - foot_pitch(animated.foot);
+        let flexion = in_animation.lean(animated) - foot_attitude(animated.foot).1;
         Self {
             leg,
             hip,
@@ -46,12 +46,14 @@ impl<'a> Ankle<'a> {
 
     /// Flexion of a standing foot's ankle beyond what is allowed, radians.
     pub(in crate::placement) fn excess(&self, foot: &FootTarget) -> f32 {
-        self.lean(foot) - foot_pitch(foot.foot) - STANDING_FLEXION.max(self.animated)
+        self.lean(foot) - foot_attitude(foot.foot).1 - STANDING_FLEXION.max(self.animated)
     }
 
     /// Angle from upright by which the shank leans over the toes, radians.
     fn lean(&self, foot: &FootTarget) -> f32 {
-        let forward = (foot.foot * Vec3::Z).with_y(0.0).normalize_or(Vec3::Z);
+        let (heading, _) = foot_attitude(foot.foot);
+        let (x, z) = heading.sin_cos();
+        let forward = Vec3::new(x, 0.0, z);
         self.leg.shank_lean(self.hip - foot.ankle, forward)
     }
 }
@@ -71,7 +73,7 @@ impl Foot {
     /// Lowers the toes of a swinging foot as its ankle gives way, this share of it and this long before its landing.
     pub(in crate::placement) fn hang(&self, share: f32, secs: f32, foot: &mut FootTarget) {
         let shown = self.residual.apply(foot);
-        let excess = (self.hangs_from - foot_pitch(shown.foot)).max(0.0);
+        let excess = (self.hangs_from - foot_attitude(shown.foot).1).max(0.0);
         let [from, until] = HANG_SECS;
         let share = share * smooth_step((secs - until) / (from - until));
         let turn = Quat::from_rotation_x(share * excess * excess / (excess + SOFT_EXCESS));
