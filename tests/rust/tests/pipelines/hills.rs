@@ -1,5 +1,6 @@
 //! Runs over hills and blocks: where it is not steep they go on as runs, and hips, feet and knees go as smoothly as on level ground.
 
+use core::f32::consts::FRAC_PI_2;
 use footfall_core::{Side, Skeleton};
 use footfall_synth::Controls;
 use footfall_tests::climb::{BODIES, Climb, DT, Outcome, Way, percentile, walker};
@@ -166,15 +167,22 @@ fn no_foot_jumps_when_a_step_is_planned_anew() {
     }
 }
 
-/// A runner's foot is high in the middle of its way anyway, and toes that point straight down point neither ahead nor back.
+/// A runner's foot is high in the middle of its way anyway, toes that point straight down point neither ahead nor back, and a foot with little time to come down
+/// gets up its hurry.
 #[test]
-fn kerbs_are_run_over_without_a_kick() {
-    for (body, height_m, speed_mps) in [(0.65, 0.15, 3.2), (0.65, 0.1, 3.2), (1.0, 0.23, 4.0)] {
+fn kerbs_are_crossed_without_a_kick() {
+    for (body, height_m, speed_mps, direction_rad) in [
+        (0.65, 0.15, 3.2, 0.0),
+        (0.65, 0.1, 3.2, 0.0),
+        (1.0, 0.23, 4.0, 0.0),
+        (0.65, 0.15, 0.8, FRAC_PI_2),
+    ] {
         let skeleton = Skeleton::standard().scaled(body);
-        for seed in 1..11 {
-            let from = 1.0 + 0.37 * seed as f32 % 1.0;
-            let mut terrain = Relief::still(move |_, z| {
-                let way = z - from;
+        let (aside, ahead) = f32::sin_cos(direction_rad);
+        for seed in 1..13 {
+            let from = 1.0 + (0.37 * seed as f32).fract();
+            let mut terrain = Relief::still(move |x, z| {
+                let way = x * aside + z * ahead - from;
                 if way > 0.0 && way.rem_euclid(4.0) < 2.0 {
                     height_m
                 } else {
@@ -185,6 +193,7 @@ fn kerbs_are_run_over_without_a_kick() {
             walker.generator.stand();
             let controls = Controls {
                 speed_mps,
+                direction_rad,
                 ..Controls::STAND
             };
             let mut toes = Side::BOTH.map(|_| vec![]);
@@ -194,12 +203,13 @@ fn kerbs_are_run_over_without_a_kick() {
                     toes[side.index()].push(walker.world.position(side.toes()));
                 }
             }
-            let most = toes.map(|places| most_acceleration(&places)).into_iter();
-            let most = most.fold(0.0, f32::max) / body;
-            assert!(
-                most < 450.0,
-                "body {body}, {height_m} m, seed {seed}: {most} m/s²"
-            );
+            for places in toes {
+                let most = most_acceleration(&places) / body;
+                assert!(
+                    most < 450.0,
+                    "body {body}, {height_m} m, {direction_rad}, seed {seed}: {most} m/s²"
+                );
+            }
         }
     }
 }

@@ -93,10 +93,12 @@ impl FootPlacer {
         animated: &[Animated; 2],
         targets: &mut [FootTarget; 2],
     ) {
-        // While one foot reaches down, the heel of the other rises.
-        let reaches_down = self.feet.each_ref().map(|foot| {
+        // While one foot reaches down, and once it has, the heel of the other rises, which stood before.
+        let reaches_down = [0, 1].map(|index| {
+            let (foot, other) = (&self.feet[index], &self.feet[1 - index]);
+            let stood = foot.mode == Mode::Locked && foot.swing_secs > other.swing_secs;
             let foothold = foot.plan.map(|plan| plan.foothold).or(foot.hold);
-            foothold.is_some_and(|foothold| foothold.on_ball && foothold.pitch > 0.0)
+            foothold.is_some_and(|foothold| foothold.on_ball && foothold.pitch > 0.0) && !stood
         });
         for (index, target) in targets.iter_mut().enumerate() {
             let stretch = self.stretch(index, animated, hips[0], hips_rotation);

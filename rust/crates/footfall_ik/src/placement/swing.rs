@@ -17,6 +17,8 @@ use glam::{Quat, Vec3};
 /// descent from which this applies, metres.
 const EARLY_SECS: [f32; 2] = [0.28, 0.07];
 const EARLY_FALL_M: f32 = 0.08;
+/// Part of the swing over which a foot that has less time than that gets up its hurry.
+const HURRIED_SHARE: f32 = 0.5;
 /// Parts of the swing until which a rising foot stays over its last place, and at which it has caught up: its toes come over the edge
 /// before it and not through it; and the rise from which this applies, metres.
 const LATE_SHARES: [f32; 2] = [0.1, 0.6];
@@ -82,7 +84,7 @@ impl Foot {
             (self.correction, lift) = way.at(&from, &toward, share, passed);
             if self.origin == WayOrigin::Foothold {
                 let fall = (1.0 - way.even) * (from.shift.y - toward.shift.y);
-                self.hurry(animated, &flat, secs, fall);
+                self.hurry(animated, &flat, [secs, share], fall);
                 self.hold_back(animated, [start, lands], [&from, &toward], share);
             }
             self.stay_before_edge(animated, [start, lands]);
@@ -137,10 +139,11 @@ impl Foot {
     }
 
     /// Brings a foot that goes down by so much over its foothold early: its heel keeps clear of the edge behind it.
-    fn hurry(&mut self, animated: &Animated, flat: &Frame, secs: f32, fall_m: f32) {
+    fn hurry(&mut self, animated: &Animated, flat: &Frame, [secs, share]: [f32; 2], fall_m: f32) {
         let [from, until] = EARLY_SECS;
-        let early =
-            smooth_step((from - secs) / (from - until)) * smooth_step(fall_m / EARLY_FALL_M);
+        let early = smooth_step((from - secs) / (from - until))
+            * smooth_step(share / HURRIED_SHARE)
+            * smooth_step(fall_m / EARLY_FALL_M);
         let left = flat.position - animated.flat.position;
         self.correction.shift += early * left * Vec3::new(1.0, 0.0, 1.0);
     }
