@@ -5,8 +5,10 @@
     reason = "the whole sweep prints its table, and tests may fail"
 )]
 
-use footfall_tests::climb::{BODIES, Climb, Failure, Fault, Outcome, Way, percentile};
-use footfall_tests::terrain::Origin;
+use footfall_core::{Side, Skeleton};
+use footfall_synth::Controls;
+use footfall_tests::climb::{BODIES, Climb, DT, Failure, Fault, Outcome, Way, percentile, walker};
+use footfall_tests::terrain::{Origin, Relief};
 use std::collections::BTreeMap;
 use std::num::NonZero;
 use std::thread;
@@ -299,6 +301,34 @@ fn edges_of_blocks_throw_no_swinging_foot() {
         };
         let outcome = climb.walk();
         assert!(outcome.jump < 0.07, "{climb:?}: {} m", outcome.jump);
+    }
+}
+
+/// Turning on stairs swings a foot over several treads, whose edges lie near both ends of its way.
+#[test]
+fn nobody_who_turns_on_stairs_kicks_as_high_as_the_hip() {
+    let skeleton = Skeleton::standard().scaled(0.65);
+    for seed in 1..17 {
+        let from = 1.0 + (0.37 * seed as f32).fract();
+        let mut terrain =
+            Relief::still(move |_, z| 0.17 * ((z - from) / 0.3 + 1.0).floor().clamp(0.0, 12.0));
+        let mut walker = walker(&skeleton, seed);
+        walker.generator.stand();
+        for frame in 0..900 {
+            let phase = 1.3 * frame as f32 * DT + 0.31 * seed as f32;
+            let controls = Controls {
+                speed_mps: 1.2,
+                turn_rate_radps: 1.5 * phase.sin(),
+                ..Controls::STAND
+            };
+            walker.climb(DT, controls, &mut terrain, true);
+            for side in Side::BOTH {
+                let height = |joint| walker.world.position(joint).y;
+                let below = height(side.upper_leg()) - height(side.foot());
+                let least = 0.1 * skeleton.mean_leg_length();
+                assert!(below > least, "seed {seed}, frame {frame}: {below} m");
+            }
+        }
     }
 }
 

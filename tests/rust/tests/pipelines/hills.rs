@@ -167,7 +167,7 @@ fn no_foot_jumps_when_a_step_is_planned_anew() {
     }
 }
 
-/// A runner's foot is high in the middle of its way anyway, toes that point straight down point neither ahead nor back, and a foot with little time to come down
+/// A runner's foot is high in the middle of its way, toes that point straight down point neither ahead nor back, and a foot with little time to come down
 /// gets up its hurry.
 #[test]
 fn kerbs_are_crossed_without_a_kick() {

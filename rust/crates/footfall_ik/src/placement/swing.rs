@@ -34,8 +34,6 @@ const LEVEL_SECS: [f32; 2] = [0.25, 0.02];
 /// Share of its height over the toes by which the heel then descends, until this part of the swing; otherwise the knee would bend for it.
 const LEVEL_HEEL: f32 = 0.7;
 const LEVEL_HEEL_SHARE: f32 = 0.4;
-/// Share of the lift over edges that a runner's foot needs, which is high in the middle of its way anyway.
-const RUN_LIFT_SHARE: f32 = 0.4;
 /// A planned foothold is kept as long as the animation's landing moved less than this, metres.
 const SAME_LANDING_M: f32 = 0.1;
 
@@ -198,12 +196,7 @@ impl Foot {
         let way = plan.way.unwrap_or_else(|| {
             let lifted = self.lifted(scene);
             let from = animated.flat.position + lifted.shift;
-            let way = Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole);
-            if self.origin == WayOrigin::Air {
-                way.lifted(RUN_LIFT_SHARE)
-            } else {
-                way
-            }
+            Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole)
         });
         if plan.way.is_none() {
             let mut foothold = plan.foothold;

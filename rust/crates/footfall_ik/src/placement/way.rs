@@ -11,13 +11,11 @@ use glam::Vec3;
 const RISE_SHARE: f32 = 0.5;
 const FALL_SHARE: f32 = 0.65;
 /// Clearance of a swinging foot from the ground, metres.
-const CLEARANCE_M: f32 = 0.03;
+const CLEARANCE_M: f32 = 0.04;
 /// Typical lift on flat ground in the middle of the swing, metres.
 const USUAL_LIFT_M: f32 = 0.05;
 /// Height above the sole's path up to which ground is no obstacle, metres.
 const FLAT_WAY_M: f32 = 0.01;
-/// Greatest lift in the middle of the swing, relative to the lift that any place of the path needs.
-const MOST_LIFT_SHARE: f32 = 2.5;
 /// Number of places of the path at which the ground is queried.
 const WAY_POINTS: usize = 6;
 /// Distance by which the toes meet an edge before the ankle is there, metres.
@@ -51,7 +49,7 @@ impl Way {
         let way = (sole.position - from).with_y(0.0);
         let length = way.length().max(SHORT_WAY_M);
         let slope = rise / length;
-        let (mut lift, mut highest, mut edge) = (0.0_f32, 0.0_f32, 0.0_f32);
+        let (mut lift, mut edge) = (0.0_f32, 0.0_f32);
         for point in 1..=WAY_POINTS {
             let share = point as f32 / (WAY_POINTS + 1) as f32;
             let at = from.lerp(sole.position, smooth_step(share));
@@ -60,12 +58,11 @@ impl Way {
             };
             edge = edge.max(height - (at.y + TOES_M * slope));
             let foot = from.y + rise * smooth_step(rising(share, rise > 0.0));
-            let shape = (4.0 * share * (1.0 - share)).powi(2);
-            let short = height + CLEARANCE_M - foot - USUAL_LIFT_M * shape.sqrt();
+            let usual = USUAL_LIFT_M * 4.0 * share * (1.0 - share);
+            let short = height + CLEARANCE_M - foot - usual;
             // What lies no higher than the way from one foothold to the other is cleared by any walk.
-            if height > foot + FLAT_WAY_M && short > 0.0 {
-                lift = lift.max(short / shape.max(0.2));
-                highest = highest.max(short);
+            if height > foot + FLAT_WAY_M {
+                lift = lift.max(short);
             }
         }
         let slopes = [normal, sole.up()].map(|up| -up.dot(way) / (length * up.y.max(0.5)));
@@ -79,17 +76,9 @@ impl Way {
             share(edge, EVEN_M) * share(beyond, EVEN_SLOPE)
         };
         Self {
-            // What stands near an end of the way is no reason to kick in its middle: there the guard lifts the foot.
-            lift_m: (1.0 - even) * lift.min(MOST_LIFT_SHARE * highest),
+            // What stands near an end of the way is no reason to kick higher in its middle: there the guard lifts the foot.
+            lift_m: (1.0 - even) * lift,
             even,
-        }
-    }
-
-    /// The same way with this share of its lift.
-    pub(super) fn lifted(self, share: f32) -> Self {
-        Self {
-            lift_m: share * self.lift_m,
-            ..self
         }
     }
 
