@@ -36,25 +36,30 @@ impl<'a> Ankle<'a> {
             hip: animated_hip,
             animated: 0.0,
         };
-        let flexion = in_animation.lean(animated) - foot_attitude(animated.foot).1;
         Self {
             leg,
             hip,
-            animated: flexion,
+            animated: in_animation.flexion(animated),
         }
     }
 
     /// Flexion of a standing foot's ankle beyond what is allowed, radians.
     pub(in crate::placement) fn excess(&self, foot: &FootTarget) -> f32 {
-        self.lean(foot) - foot_attitude(foot.foot).1 - STANDING_FLEXION.max(self.animated)
+        self.flexion(foot) - STANDING_FLEXION.max(self.animated)
     }
 
-    /// Angle from upright by which the shank leans over the toes, radians.
-    fn lean(&self, foot: &FootTarget) -> f32 {
-        let (heading, _) = foot_attitude(foot.foot);
+    /// Flexion of the ankle, toes towards the shin, radians.
+    fn flexion(&self, foot: &FootTarget) -> f32 {
+        let [lean, pitch] = self.lean_and_pitch(foot);
+        lean - pitch
+    }
+
+    /// Angle from upright by which the shank leans over the toes, and the pitch of the foot, radians.
+    fn lean_and_pitch(&self, foot: &FootTarget) -> [f32; 2] {
+        let (heading, pitch) = foot_attitude(foot.foot);
         let (x, z) = heading.sin_cos();
         let forward = Vec3::new(x, 0.0, z);
-        self.leg.shank_lean(self.hip - foot.ankle, forward)
+        [self.leg.shank_lean(self.hip - foot.ankle, forward), pitch]
     }
 }
 
@@ -67,13 +72,15 @@ impl Foot {
             smooth_step(self.swing_secs / RELAX_SECS)
         };
         let most = STANDING_FLEXION + relaxed * (HANGING_FLEXION - STANDING_FLEXION);
-        self.hangs_from = ankle.lean(target) - most.max(ankle.animated);
+        let [lean, _] = ankle.lean_and_pitch(target);
+        self.hangs_from = lean - most.max(ankle.animated);
     }
 
     /// Lowers the toes of a swinging foot as its ankle gives way, this share of it and this long before its landing.
     pub(in crate::placement) fn hang(&self, share: f32, secs: f32, foot: &mut FootTarget) {
         let shown = self.residual.apply(foot);
-        let excess = (self.hangs_from - foot_attitude(shown.foot).1).max(0.0);
+        let (_, pitch) = foot_attitude(shown.foot);
+        let excess = (self.hangs_from - pitch).max(0.0);
         let [from, until] = HANG_SECS;
         let share = share * smooth_step((secs - until) / (from - until));
         let turn = Quat::from_rotation_x(share * excess * excess / (excess + SOFT_EXCESS));

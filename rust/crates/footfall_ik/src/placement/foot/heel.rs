@@ -60,7 +60,7 @@ impl Foot {
         let hold = self.hold.filter(|_| pitch >= 0.0)?;
         let sole = scene.sole(&hold)?;
         let risen = Self { sole, ..*self };
-        Some(risen.ankle_at(rocker, MAX_PITCH.max(pitch)))
+        Some(risen.ankle_at(rocker, self.highest_pitch(pitch)))
     }
 
     /// Returns the greatest pitch to which the heel can rise from a pitch of [`on_ball`](Self::on_ball), radians: that pitch for a foot on its heel.
