@@ -11,6 +11,8 @@ const FIRST_SEED := 1
 
 ## Title above the panel's sliders.
 @export var title := ""
+## The slowest speed to ask for: at 0 a trained model stands.
+@export_range(0.0, 1.0, 0.1, "suffix:m/s") var slowest := 0.4
 ## The fastest speed to ask for: from about 2 m/s on a trained model runs.
 @export_range(0.5, 6.0, 0.1, "suffix:m/s") var fastest := 2.0
 ## Label of the button to another scene, and that scene.
@@ -23,6 +25,7 @@ const FIRST_SEED := 1
 
 
 func _ready() -> void:
+	_speed.min_value = slowest
 	_speed.max_value = fastest
 	_speed.value_changed.connect(func(value: float) -> void:
 		%SpeedValue.text = "%.2f m/s" % value
