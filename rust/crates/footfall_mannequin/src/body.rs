@@ -162,8 +162,8 @@ impl Body {
         self.add(
             0.04,
             Shape::Ellipsoid(
-                Vec3::new(0.078, 0.93, -0.055),
-                Vec3::new(0.078, 0.085, 0.08),
+                Vec3::new(0.078, 0.93, -0.050),
+                Vec3::new(0.076, 0.085, 0.070),
             ),
         );
         // From the neck down to the shoulders.

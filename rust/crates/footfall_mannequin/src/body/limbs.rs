@@ -3,7 +3,14 @@
 use super::Body;
 use crate::field::{Loft, Shape, Station};
 use footfall_core::{Joint, Side, Skeleton};
-use glam::Vec3;
+use glam::{Quat, Vec3};
+
+/// The fingers' phalanges, from the knuckles on: bend from the palm in degrees, length, and half the width and the thickness where each begins and ends, metres.
+const PHALANGES: [(f32, f32, [f32; 2], [f32; 2]); 3] = [
+    (35.0, 0.042, [0.040, 0.0145], [0.037, 0.0135]),
+    (72.0, 0.026, [0.037, 0.0135], [0.034, 0.0125]),
+    (97.0, 0.020, [0.034, 0.0125], [0.027, 0.0110]),
+];
 
 impl Body {
     pub(super) fn arm(&mut self, at: &impl Fn(Joint) -> Vec3) {
@@ -53,7 +60,7 @@ impl Body {
         self.hand(wrist);
     }
 
-    /// A relaxed mitten: palm down, fingers together and slightly bent, thumb to the front.
+    /// A relaxed mitten: palm down, fingers together and curled, thumb to the front.
     fn hand(&mut self, wrist: Vec3) {
         let station = |along: f32, up: f32, down: f32, front: f32, back: f32| Station {
             along,
@@ -70,16 +77,18 @@ impl Body {
             Shape::Loft(Loft::new(wrist, Vec3::X, Vec3::Z, [0.012, 0.012], palm)),
         );
         let knuckles = wrist + Vec3::new(0.09, 0.0, 0.0);
-        let along = Vec3::new(0.975, -0.222, 0.0).normalize();
-        let fingers = vec![
-            station(0.0, 0.0140, 0.0150, 0.040, 0.039),
-            station(0.045, 0.0130, 0.0130, 0.037, 0.035),
-            station(0.080, 0.0115, 0.0115, 0.028, 0.026),
-        ];
-        self.add(
-            0.012,
-            Shape::Loft(Loft::new(knuckles, along, Vec3::Z, [0.01, 0.016], fingers)),
-        );
+        let mut joint = knuckles;
+        for (degrees, length, from, to) in PHALANGES {
+            let along = Quat::from_rotation_z(-f32::to_radians(degrees)) * Vec3::X;
+            let row =
+                |along: f32, [wide, thick]: [f32; 2]| station(along, thick, thick, wide, wide);
+            let stations = vec![row(0.0, from), row(length, to)];
+            self.add(
+                0.010,
+                Shape::Loft(Loft::new(joint, along, Vec3::Z, [0.010, 0.012], stations)),
+            );
+            joint += along * length;
+        }
         let base = wrist + Vec3::new(0.025, -0.006, 0.022);
         let knuckle = wrist + Vec3::new(0.062, -0.012, 0.056);
         let tip = wrist + Vec3::new(0.098, -0.018, 0.066);
