@@ -25,6 +25,13 @@ func _process(_delta: float) -> void:
 	_camera.target_position = middle() + Vector3.UP * 0.85
 
 
+## Close-up views for pictures: from three quarters both columns, neither name before the other.
+func close_ups() -> Dictionary[String, Array]:
+	var views := super()
+	views["three_quarter"] = [middle() + Vector3.UP * 0.9, 12.0, 9.0, 6.5]
+	return views
+
+
 func _add_walker(row: int, column: int) -> void:
 	var kind: String = COLUMNS[column][1]
 	var place := Vector3((0.5 - column) * BETWEEN_COLUMNS_M, 0.0, -row * BETWEEN_ROWS_M)

@@ -7,9 +7,9 @@ use glam::{Quat, Vec3};
 
 /// The fingers' phalanges, from the knuckles on: bend from the palm in degrees, length, and half the width and the thickness where each begins and ends, metres.
 const PHALANGES: [(f32, f32, [f32; 2], [f32; 2]); 3] = [
-    (35.0, 0.042, [0.040, 0.0145], [0.037, 0.0135]),
-    (72.0, 0.026, [0.037, 0.0135], [0.034, 0.0125]),
-    (97.0, 0.020, [0.034, 0.0125], [0.027, 0.0110]),
+    (28.0, 0.042, [0.040, 0.0150], [0.037, 0.0140]),
+    (60.0, 0.026, [0.037, 0.0140], [0.034, 0.0130]),
+    (85.0, 0.020, [0.034, 0.0130], [0.027, 0.0115]),
 ];
 
 impl Body {

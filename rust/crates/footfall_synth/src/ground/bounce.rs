@@ -2,10 +2,16 @@
 //!
 //! The leg is a spring under a mass: the force on it rises and falls as half a sine wave over the stance, and is nothing as the foot lands and as it takes
 //! off (Alexander and Jayes, Vertical movements in walking and running, 1978). So the hips are lowest in the middle of the stance, and nothing jolts where
-//! flight and stance meet. Where a step is replanned in its stance, the rest of the wave follows.
+//! flight and stance meet. A leg on which a leap lands pushes early, by a second harmonic, for otherwise its knee would fold. Where a step is replanned in
+//! its stance, the rest of the wave follows.
 
 use crate::gait::GRAVITY_MPS2;
 use core::f32::consts::PI;
+use footfall_core::ease::smooth_step;
+
+/// Speeds of a fall above which the leg pushes early, and above which as early as it can, m/s.
+const EASY_FALL_MPS: f32 = 1.0;
+const HARD_FALL_MPS: f32 = 2.2;
 
 /// The hips' height over one stance.
 pub(super) struct Bounce {
@@ -34,28 +40,43 @@ impl Bounce {
     }
 }
 
-/// Push of a leg in what is left of a stance.
+/// Push of a leg in what is left of a stance: sin φ + `early` · sin 2φ, where φ is half a turn in the whole stance.
 #[derive(Clone, Copy)]
 pub(super) struct Push {
     /// Time of the stance that has passed, and that is left, in one unit.
     pub(super) borne: f32,
     pub(super) left: f32,
+    /// Strength of the second harmonic: at [`MOST_EARLY`](Self::MOST_EARLY) the force still is nowhere below zero.
+    pub(super) early: f32,
 }
 
 impl Push {
+    /// Greatest strength of the second harmonic.
+    const MOST_EARLY: f32 = 0.5;
+
+    /// Returns the strength of the second harmonic with which a leg catches a fall, upward speed in m/s: none in runs, whose hips fall by 0.5 to 0.9 m/s.
+    pub(super) fn early_for(fall_mps: f32) -> f32 {
+        Self::MOST_EARLY
+            * smooth_step((-fall_mps - EASY_FALL_MPS) / (HARD_FALL_MPS - EASY_FALL_MPS))
+    }
+
     /// Returns the displacement by the leg's force a time from now, per unit of the speed that the force gives until the take-off.
     pub(super) fn displacement(self, t: f32) -> f32 {
-        let stance = self.borne + self.left;
-        let begun = PI * self.borne / stance;
-        let risen = (begun + PI * t / stance).sin() - begun.sin();
-        (t * begun.cos() - stance * risen / PI) / (1.0 + begun.cos())
+        let radians = PI / (self.borne + self.left);
+        let begun = radians * self.borne;
+        // Of a harmonic of this order: the displacement, times π over the stance.
+        let of = |order: f32| {
+            let (from, to) = (order * begun, order * (begun + radians * t));
+            (t * from.cos() - (to.sin() - from.sin()) / (order * radians)) / order
+        };
+        // The speed until the take-off, times the same.
+        let speed = 1.0 + begun.cos() - self.early * begun.sin().powi(2);
+        (of(1.0) + self.early * of(2.0)) / speed
     }
 
     /// Returns the displacement at the take-off.
     pub(super) fn whole(self) -> f32 {
-        let stance = self.borne + self.left;
-        let begun = PI * self.borne / stance;
-        (self.left * begun.cos() + stance * begun.sin() / PI) / (1.0 + begun.cos())
+        self.displacement(self.left)
     }
 }
 
@@ -67,6 +88,7 @@ mod tests {
     const WHOLE: Push = Push {
         borne: 0.0,
         left: SECS,
+        early: 0.0,
     };
 
     #[test]
@@ -94,6 +116,7 @@ mod tests {
             let push = Push {
                 borne: cut,
                 left: SECS - cut,
+                early: WHOLE.early,
             };
             let rest = Bounce::new(whole.height(cut), [fall, 0.4], push);
             for part in [0.2, 0.5, 1.0] {
@@ -103,6 +126,30 @@ mod tests {
             }
             assert!((push.whole() - push.displacement(push.left)).abs() < 1e-6);
         }
+    }
+
+    #[test]
+    fn a_leg_on_which_a_leap_lands_is_not_folded() {
+        let depth = |early: f32| {
+            let bounce = Bounce::new(0.0, [-2.6, 0.8], Push { early, ..WHOLE });
+            let heights = (0..=200).map(|index| bounce.height(index as f32 * 0.005 * SECS));
+            heights.fold(0.0, f32::min)
+        };
+        let early = Push::early_for(-2.6);
+        assert!((early - Push::MOST_EARLY).abs() < 1e-6);
+        assert!(depth(early) > 0.7 * depth(0.0), "{} m", depth(early));
+        assert!(Push::early_for(-0.9).abs() < 1e-6);
+        // The leg only pushes, and leaves at the speed that is asked for.
+        let push = Push { early, ..WHOLE };
+        let bounce = Bounce::new(0.0, [-2.6, 0.8], push);
+        let h = 1e-3;
+        for index in 1..20 {
+            let t = index as f32 * 0.05 * SECS;
+            let force = bounce.height(t + h) - 2.0 * bounce.height(t) + bounce.height(t - h);
+            assert!(force / (h * h) > -GRAVITY_MPS2 - 1.0, "at {t} s");
+        }
+        let speed = (bounce.height(SECS) - bounce.height(SECS - h)) / h;
+        assert!((speed - 0.8).abs() < 0.02, "{speed} m/s");
     }
 
     #[test]

@@ -58,6 +58,7 @@ impl Planter {
             push: Push {
                 borne,
                 left: take_off as f32,
+                early: 0.0,
             },
         };
         let kept = course.change.weight;

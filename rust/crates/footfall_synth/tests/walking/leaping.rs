@@ -48,6 +48,36 @@ fn who_has_just_set_out_leaps() {
     }
 }
 
+#[test]
+fn runners_land_from_leaps_on_legs_that_hold() {
+    let skeleton = Skeleton::standard();
+    for (seed, speed, asked, least) in [
+        (1, 3.5, 0.4, 0.70),
+        (2, 3.5, 0.4, 0.70),
+        (3, 2.5, 0.25, 0.73),
+        (4, 2.5, 0.25, 0.73),
+    ] {
+        let mut generator = generator(Kind::Styled, seed);
+        run(&mut generator, &skeleton, &walking(speed), 240);
+        generator.jump(asked);
+        let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 150);
+        let highest =
+            (0..frames.len()).max_by(|a, b| hips(&frames[*a]).total_cmp(&hips(&frames[*b])));
+        let landing = &frames[highest.expect("there are frames")..];
+        let lowest = landing.iter().map(hips).fold(f32::INFINITY, f32::min);
+        assert!(
+            lowest > least,
+            "hips at {lowest} m after {asked} m at {speed} m/s"
+        );
+        let lowest_at = landing.iter().position(|frame| hips(frame) <= lowest);
+        let next = landing[lowest_at.expect("there are frames")..]
+            .iter()
+            .take(20);
+        let risen = next.map(hips).fold(0.0, f32::max);
+        assert!(risen > 0.86, "it runs on at {risen} m after {asked} m");
+    }
+}
+
 /// Height of a wrist over its shoulder, metres.
 fn lifted(frame: &Frame, [hand, shoulder]: [Joint; 2]) -> f32 {
     frame.model.position(hand).y - frame.model.position(shoulder).y
