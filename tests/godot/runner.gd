@@ -1,7 +1,7 @@
 extends Node
 ## Runs every `test_*` method of every `res://cases/test_*.gd`, each on a fresh node, and exits with 0 when all pass.
 ##
-## After `--`, a word narrows the run to tests whose `file:method` contains it, and `--part I N` to every N-th file from the I-th on, counted from 0.
+## After `--`, a word narrows the run to tests whose `file:method` contains it.
 
 const CASES := "res://cases"
 ## Failed checks shown for each test.
@@ -10,18 +10,11 @@ const MOST_SHOWN := 5
 
 func _ready() -> void:
 	var wanted := OS.get_cmdline_user_args()
-	var part := 0
-	var parts := 1
-	if wanted.size() == 3 and wanted[0] == "--part":
-		part = wanted[1].to_int()
-		parts = wanted[2].to_int()
-		wanted.clear()
 	var passed := 0
 	var failed := 0
-	var files := Array(DirAccess.get_files_at(CASES)).filter(func(file: String) -> bool:
-		return file.begins_with("test_") and file.ends_with(".gd"))
-	for index: int in range(part, files.size(), parts):
-		var file: String = files[index]
+	for file: String in DirAccess.get_files_at(CASES):
+		if not (file.begins_with("test_") and file.ends_with(".gd")):
+			continue
 		var script: GDScript = load(CASES.path_join(file))
 		if script == null or not script.can_instantiate():
 			printerr("FAILED %s: the script does not compile" % file)

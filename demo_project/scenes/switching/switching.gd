@@ -25,7 +25,7 @@ func _process(_delta: float) -> void:
 	_camera.target_position = middle() + Vector3.UP * 0.85
 
 
-## Close-up views for pictures: from three quarters both columns, neither name before the other.
+## Close-up views for pictures; the one from three quarters shows both columns with their names side by side.
 func close_ups() -> Dictionary[String, Array]:
 	var views := super()
 	views["three_quarter"] = [middle() + Vector3.UP * 0.9, 12.0, 9.0, 6.5]

@@ -99,9 +99,20 @@ pub(crate) fn command(only: &[String]) -> Result<()> {
 
 /// Runs lanes side by side until each has ended or failed; returns the steps' names with their seconds.
 fn side_by_side(lanes: &[Vec<Step>]) -> Result<Vec<String>> {
+    let ended: Vec<Result<Vec<String>>> = thread::scope(|scope| {
+        let running: Vec<_> = lanes
+            .iter()
+            .map(|lane| scope.spawn(|| in_turn(lane)))
+            .collect();
+        let joined = running.into_iter().map(|lane| {
+            lane.join()
+                .unwrap_or_else(|_panic| bail!("a check panicked"))
+        });
+        joined.collect()
+    });
     let mut times = Vec::new();
     let mut failures = Vec::new();
-    for lane in each_at_once(lanes, |lane| in_turn(lane)) {
+    for lane in ended {
         match lane {
             Ok(lane) => times.extend(lane),
             Err(failure) => failures.push(format!("{failure:#}")),
@@ -111,25 +122,6 @@ fn side_by_side(lanes: &[Vec<Step>]) -> Result<Vec<String>> {
         bail!("{}", failures.join("\n"));
     }
     Ok(times)
-}
-
-/// Does work for each of several things at the same time.
-fn each_at_once<T: Sync, R: Send>(
-    all: &[T],
-    work: impl Fn(&T) -> Result<R> + Sync,
-) -> Vec<Result<R>> {
-    let work = &work;
-    thread::scope(|scope| {
-        let running: Vec<_> = all
-            .iter()
-            .map(|one| scope.spawn(move || work(one)))
-            .collect();
-        let joined = running.into_iter().map(|one| {
-            one.join()
-                .unwrap_or_else(|_panic| bail!("a check panicked"))
-        });
-        joined.collect()
-    })
 }
 
 /// Runs steps one after another and stops at the first that fails; returns their names with their seconds.

@@ -4,14 +4,11 @@ use crate::{
     chromium, csharp, demo, engine_run, export, godot, library, link, open, paths, process, skipped,
 };
 use anyhow::{Context as _, Result, bail};
-use godot::Engine;
 use std::env;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// Number of frames that the demo runs.
 const DEMO_FRAMES: &str = "300";
-/// Number of Godots that share the nodes' tests: two thirds of the tests' time pass in waits for frames and ports.
-const TEST_RUNS: usize = 2;
 
 pub(super) fn format() -> Result<()> {
     process::run(process::cargo().args(["fmt", "--all", "--check"]))
@@ -84,17 +81,9 @@ pub(super) fn browser() -> Result<()> {
 }
 
 pub(super) fn tests_in_godot() -> Result<()> {
-    let (engine, folder) = imported("tests/godot", "tests")?;
-    let parts: Vec<usize> = (0..TEST_RUNS).collect();
-    let ended = super::each_at_once(&parts, |part| {
-        let mut godot = open::headless(&engine, &folder);
-        godot.args(["--", "--part", &part.to_string(), &TEST_RUNS.to_string()]);
-        engine_run::judged(&mut godot, &log(&format!("tests_{part}")))
-    });
-    for said in ended {
-        // The tests' own report is worth seeing.
-        eprintln!("{}", process::tail(&said?, 6));
-    }
+    let said = in_godot("tests/godot", "tests", &[])?;
+    // The tests' own report is worth seeing.
+    eprintln!("{}", process::tail(&said, 12));
     csharp::check()
 }
 
@@ -149,24 +138,14 @@ pub(super) fn exported_demo() -> Result<()> {
 
 /// Imports a project and runs a scene of it, the main one if none is named, without a window.
 fn in_godot(project: &str, name: &str, arguments: &[&str]) -> Result<String> {
-    let (engine, folder) = imported(project, name)?;
-    engine_run::judged(open::headless(&engine, &folder).args(arguments), &log(name))
-}
-
-/// Imports a project; returns the engine and the project's folder.
-fn imported(project: &str, name: &str) -> Result<(Engine, PathBuf)> {
     let engine = godot::provision()?;
     let folder = paths::repository_root().join(project);
     require(&folder.join("project.godot"))?;
     demo::import(&engine, &folder, name)?;
-    Ok((engine, folder))
-}
-
-/// The log of a run of Godot.
-fn log(name: &str) -> PathBuf {
-    paths::target_folder()
+    let log = paths::target_folder()
         .join("verify")
-        .join(format!("{name}.log"))
+        .join(format!("{name}.log"));
+    engine_run::judged(open::headless(&engine, &folder).args(arguments), &log)
 }
 
 fn require(file: &Path) -> Result<()> {
