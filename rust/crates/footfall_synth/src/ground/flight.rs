@@ -144,6 +144,7 @@ impl Planter {
                 let push = Push {
                     borne: timing.borne as f32 * self.frame_secs,
                     left: stance_secs,
+                    // A stance that is replanned knows only the fall that is left.
                     early: Push::early_for(fall),
                 };
                 // The displacement per unit of a speed that is gained, and its excess over that of an even push.

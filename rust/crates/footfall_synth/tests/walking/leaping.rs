@@ -48,6 +48,12 @@ fn who_has_just_set_out_leaps() {
     }
 }
 
+/// Index of the frame in which the hips are highest.
+fn highest(frames: &[Frame]) -> usize {
+    let highest = (0..frames.len()).max_by(|a, b| hips(&frames[*a]).total_cmp(&hips(&frames[*b])));
+    highest.expect("there are frames")
+}
+
 #[test]
 fn runners_land_from_leaps_on_legs_that_hold() {
     let skeleton = Skeleton::standard();
@@ -61,9 +67,7 @@ fn runners_land_from_leaps_on_legs_that_hold() {
         run(&mut generator, &skeleton, &walking(speed), 240);
         generator.jump(asked);
         let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 150);
-        let highest =
-            (0..frames.len()).max_by(|a, b| hips(&frames[*a]).total_cmp(&hips(&frames[*b])));
-        let landing = &frames[highest.expect("there are frames")..];
+        let landing = &frames[highest(&frames)..];
         let lowest = landing.iter().map(hips).fold(f32::INFINITY, f32::min);
         assert!(
             lowest > least,
@@ -91,9 +95,7 @@ fn a_leap_lifts_a_knee_and_an_arm_and_folds_the_leg_that_took_off() {
         run(&mut generator, &skeleton, &walking(speed), 240);
         generator.jump(0.35);
         let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 150);
-        let highest =
-            (0..frames.len()).max_by(|a, b| hips(&frames[*a]).total_cmp(&hips(&frames[*b])));
-        let highest = highest.expect("there are frames");
+        let highest = highest(&frames);
         let takes_off = frames[..highest]
             .iter()
             .rposition(|frame| frame.contact != [false; 2]);
