@@ -20,6 +20,11 @@ const LAST_SECS: f64 = 0.39;
 const PIVOT_RADPS: [f32; 2] = [1.5, 2.5];
 const PIVOT_SECS: f64 = 0.45;
 
+/// Differences between the velocity of a step and the requested one from which steps get quicker, and at which they last this long at most, m/s and seconds. Who turns back the way they
+/// came passes through a step that hardly travels, and does not dwell on it.
+const REVERSAL_MPS: [f32; 2] = [0.3, 0.8];
+const REVERSAL_SECS: f64 = 0.55;
+
 /// Maximum speeds at the end of a first step forwards, and of one to the side or backwards, m/s. People reach no speed within 0.2 s, and who is carried that fast aside or
 /// backwards has the other foot too far behind to follow.
 const FIRST_MPS: f32 = 2.0;
@@ -27,6 +32,12 @@ const FIRST_ASIDE_MPS: f32 = 1.1;
 
 /// Maximum speed of the remainder of a replanned step, m/s.
 const REST_MOST_MPS: f32 = 2.0;
+
+/// Hardest change of the velocity in the remainder of a replanned step that does not go straight ahead before and after it, m/s²: as hard as people brake.
+const ASIDE_MPS2: f32 = 4.0;
+
+/// Least duration of a replanned walked step, as a share of the planned one: a foot on its way needs its time.
+const LEAST_SHARE: f64 = 0.75;
 
 /// Share of a walked step until which it can still end the walk, and the hardest braking of the hips for it, m/s²; and the share of its speed that a walker
 /// keeps for the step that ends the walk otherwise. It does so above the first of two speeds, and fully from the second on, m/s.
@@ -92,7 +103,7 @@ impl StepChooser {
             } else if amplitude.to < 1.0 {
                 self.walk.within(pace, LAST_SECS)
             } else {
-                self.turning(pace, controls.turn_rate)
+                self.agile(pace, controls, *velocity_mps)
             };
         }
         let request = StepRequest {
@@ -134,7 +145,7 @@ impl StepChooser {
     ) -> StepRequest {
         let secs = passed.whole_frames / self.frame_rate_hz;
         let left = (1.0 - passed.share) * secs;
-        let forwards = velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y;
+        let forwards = is_forwards(*velocity_mps);
         let gently = passed.braking_mps2(left as f32) < HARDEST_BRAKING_MPS2;
         let closes = controls
             .closes
@@ -159,6 +170,11 @@ impl StepChooser {
         let most = gait.most_change_mps(slows);
         *velocity_mps = match gait {
             Gait::Walk => {
+                let most = if forwards && is_forwards(controls.velocity_mps) {
+                    most
+                } else {
+                    most.min(ASIDE_MPS2 * left as f32)
+                };
                 let wanted = controls.velocity_within(*velocity_mps, most);
                 wanted.clamp_length_max(REST_MOST_MPS.max(velocity_mps.length()))
             }
@@ -168,14 +184,14 @@ impl StepChooser {
         if stops && forwards {
             // A shorter step would have the hips brake before it lands.
             let before_mps = before.velocity_mps;
-            let brisk =
-                smooth_step((before_mps.length() - BRISK_MPS[0]) / (BRISK_MPS[1] - BRISK_MPS[0]));
+            let brisk = between(BRISK_MPS, before_mps.length());
             *velocity_mps = velocity_mps.lerp(KEPT_SHARE * before_mps, brisk);
             mean_mps = velocity_mps.lerp(before_mps, 0.5 * brisk);
         }
         let (mut pace, facing) = self.towards(gait, mean_mps);
         if gait == Gait::Walk {
-            pace = self.turning(self.walk.within(pace, secs), controls.turn_rate);
+            pace = self.agile(self.walk.within(pace, secs), controls, *velocity_mps);
+            pace = self.walk.lasting(pace, LEAST_SHARE * secs);
         }
         let request = StepRequest {
             manner: Manner {
@@ -204,12 +220,16 @@ impl StepChooser {
         }
     }
 
-    /// Returns the pace of a walked step that turns.
-    fn turning(&self, mut pace: Pace, turn_rate_radps: f32) -> Pace {
-        let [from, to] = PIVOT_RADPS;
-        let share = smooth_step((turn_rate_radps.abs() - from) / (to - from));
-        let pivot = self.walk.within(pace, PIVOT_SECS);
-        pace.tempo += f64::from(share) * (pivot.tempo - pace.tempo);
+    /// Returns the pace of a walked step of this velocity: quicker where it turns, or where its velocity is far from the requested one.
+    fn agile(&self, mut pace: Pace, controls: &StepControls, velocity_mps: Vec2) -> Pace {
+        let missing_mps = controls.velocity_mps.distance(velocity_mps);
+        for (share, most_secs) in [
+            (between(PIVOT_RADPS, controls.turn_rate.abs()), PIVOT_SECS),
+            (between(REVERSAL_MPS, missing_mps), REVERSAL_SECS),
+        ] {
+            let quicker = self.walk.within(pace, most_secs);
+            pace.tempo += f64::from(share) * (quicker.tempo - pace.tempo);
+        }
         pace
     }
 
@@ -293,4 +313,14 @@ impl StepChooser {
             ..self.walking_request(detail)
         }
     }
+}
+
+/// Returns true for a velocity forwards, or nearly so.
+fn is_forwards(velocity_mps: Vec2) -> bool {
+    velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y
+}
+
+/// Returns the place of a value between two others, from 0 to 1, smoothed.
+fn between([from, to]: [f32; 2], value: f32) -> f32 {
+    smooth_step((value - from) / (to - from))
 }

@@ -104,13 +104,24 @@ impl PaceTable {
 
     /// Returns the pace with its tempo raised so that steps last at most `most_secs`.
     pub(crate) fn within(&self, mut pace: Pace, most_secs: f64) -> Pace {
+        pace.tempo = pace.tempo.max(self.unhurried_secs(pace) / most_secs);
+        pace
+    }
+
+    /// Returns the pace with its tempo lowered so that steps last at least `least_secs`.
+    pub(crate) fn lasting(&self, mut pace: Pace, least_secs: f64) -> Pace {
+        pace.tempo = pace.tempo.min(self.unhurried_secs(pace) / least_secs);
+        pace
+    }
+
+    /// Duration of a step of this pace at a tempo of 1, seconds.
+    fn unhurried_secs(&self, pace: Pace) -> f64 {
         let speed = self
             .samples
             .iter()
             .find(|sample| sample[0] >= pace.covariate_mps);
         let [_, _, secs] = speed.copied().unwrap_or(self.samples[SAMPLES - 1]);
-        pace.tempo = pace.tempo.max(secs / most_secs);
-        pace
+        secs
     }
 
     /// Returns the pace for a speed forwards, and the duration of its steps, seconds.

@@ -62,6 +62,7 @@ impl Cut<'_> {
             hips(0) - hips(1)
         };
         let swinging = self.timing.leading.other();
+        let strides = [self.begun.stride, self.ended.stride];
         PlanterState {
             plants: self.begun.plants,
             hips: hips(0),
@@ -72,7 +73,7 @@ impl Cut<'_> {
             ground_position: now.ground_position,
             ground_velocity: Some((now.ground_position - before.ground_position) / self.frame_secs),
             stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
-            strafe: self.begun.strafe.between(&self.ended.strafe, s),
+            strafe: self.begun.strafe.between(&self.ended.strafe, strides, s),
             balance: self.begun.balance.lerp(self.ended.balance, share),
             lean: bend.at(s),
             airborne: Some(Airborne {

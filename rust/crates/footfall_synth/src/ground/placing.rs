@@ -3,7 +3,7 @@
 use super::displacement::Displacement;
 use super::lean::Pull;
 use super::speed_change::SpeedChange;
-use crate::gait::Posture;
+use crate::gait::{Amplitude, Posture};
 use crate::plan::StepShape;
 use footfall_core::ease::smooth_step;
 use footfall_model::FEATURE_COUNT;
@@ -14,6 +14,9 @@ const CURVE_RADPS: [f32; 2] = [2.5, 3.5];
 
 /// Share of a change of speed against which a walker still leans as the step ends.
 const LEFT: f32 = 0.5;
+
+/// Speed above which a step has a direction of its own, m/s.
+const DIRECTED_MPS: f32 = 0.1;
 
 /// Placing of a step on the ground.
 #[derive(Clone, Copy, Debug)]
@@ -64,6 +67,21 @@ impl Placing<'_> {
             return change.whole();
         }
         change
+    }
+
+    /// Returns true for a step of a walk that hardly travels, after one that did: its walker turns back.
+    pub(super) fn turns_back(&self) -> bool {
+        let [before, after] = [self.velocity_before_mps, self.velocity_mps]
+            .map(|velocity| velocity.length() > DIRECTED_MPS);
+        self.shape.amplitude == Amplitude::WALK && before && !after
+    }
+
+    /// Returns the way of a step inside a walk, along its direction and at its mean speed, metres; `None` for others. One after a slower step, or after one that went elsewhere, covers less.
+    pub(super) fn way_m(&self, secs: f32) -> Option<f32> {
+        let [before, after] = self.ends_mps();
+        let mean_mps = (0.5 * (before + after)).dot(after.normalize_or_zero());
+        let walks = self.shape.amplitude == Amplitude::WALK && !self.turns_back();
+        walks.then_some(mean_mps * secs)
     }
 
     /// Returns the velocities at the beginning and at the end of the step, m/s.

@@ -11,12 +11,13 @@ use footfall_core::Side;
 use footfall_core::rotation::from_heading;
 
 impl Planter {
-    /// Turns a forward step to the direction of travel. Under the heading `own_facing` the forward step goes along +Z. A step inside a walk covers `wanted_m` metres.
+    /// Turns a forward step to the direction of travel. Under the heading `own_facing` the forward step goes along +Z. `strides` are the factors on the legs' reach before the step
+    /// and after it. A step inside a walk covers `wanted_m` metres.
     pub(crate) fn turn_step(
         &mut self,
         generated: &mut [GeneratedFrame],
         timing: &StepTiming,
-        (strafe, wanted_m): (Strafe, Option<f32>),
+        (strafe, strides, wanted_m): (Strafe, [f32; 2], Option<f32>),
         own_facing: f32,
         out: &mut [PlantedFrame],
     ) {
@@ -28,7 +29,10 @@ impl Planter {
             let strafe = strafe.lengthened(self.flat_way(timing, generated, own_facing), wanted_m);
             // A step that ends a walk brings the feet together.
             let strafe = if timing.rests {
-                strafe
+                Strafe {
+                    widening: 0.0,
+                    ..strafe
+                }
             } else {
                 strafe.spread(generated, leg_length)
             };
@@ -37,6 +41,7 @@ impl Planter {
                 feet: &self.feet,
                 leg_length,
                 own_facing,
+                strides,
             };
             let timing = self.begun(timing);
             turner.turn_step(generated, out, &timing, [&before, &strafe]);

@@ -118,7 +118,12 @@ impl PlantedStep {
             before.map_or((Strafe::NONE, stride), |state| (state.strafe, state.stride));
         let step_secs = frame_secs * timing.frames as f32;
         let bend = Bend::new(lean_before, &placing.pull(step_secs), step_secs);
-        let strafe = Strafe::of(placing.velocity_mps, step_secs, &self.skeleton);
+        let strafe = if placing.turns_back() {
+            // In the old direction still, over a stance as wide.
+            before
+        } else {
+            Strafe::of(placing.velocity_mps, step_secs, &self.skeleton)
+        };
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let generated = &mut generated[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
@@ -134,7 +139,7 @@ impl PlantedStep {
             decode_turned(
                 &mut blended,
                 &standing,
-                before.between(&strafe, s),
+                before.between(&strafe, [stride_before, stride], s),
                 rotations,
             );
         }
@@ -165,12 +170,10 @@ impl PlantedStep {
         };
         planter.set_frame_secs(frame_secs);
         planter.set_stride(stride);
-        let walks = shape.amplitude == Amplitude::WALK;
-        let wanted_m = walks.then_some(placing.velocity_mps.length() * step_secs);
         planter.turn_step(
             generated,
             &timing,
-            (strafe, wanted_m),
+            (strafe, [stride_before, stride], placing.way_m(step_secs)),
             facing - strafe.turn,
             frames,
         );

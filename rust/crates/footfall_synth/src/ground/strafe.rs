@@ -31,6 +31,9 @@ const PASSING_SHARE: f32 = 0.095;
 /// Swing of arms and trunk in steps to the side, as a share of a walk forwards.
 const SIDE_SWAY: f32 = 0.25;
 
+/// Least factor on the legs' reach with which the direction of a step counts.
+const LEAST_STRIDE: f32 = 0.25;
+
 /// Turn of a step's legs and trunk.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Strafe {
@@ -84,7 +87,7 @@ impl Strafe {
         // Each leg goes half a step out and half a step in.
         let side_step = 0.5 * step * self.reach[0].abs();
         if side_step > 0.0 {
-            self.widening = (side_step + PASSING_SHARE * leg_length - stance).max(0.0);
+            self.widening = (side_step + PASSING_SHARE * leg_length - stance).max(self.widening);
         }
         self
     }
@@ -121,15 +124,18 @@ impl Strafe {
         [left, forwards, self.forwardness, self.turn, self.widening]
     }
 
-    /// Interpolates from the previous step to this one, at part `s` of the step.
-    pub(crate) fn between(&self, next: &Self, s: f32) -> Self {
+    /// Interpolates from the previous step to this one, at part `s` of the step. `strides` are the factors on the legs' reach in both: the direction of longer steps counts for more, so
+    /// that a body that has all but stopped sets off without going the old way first.
+    pub(crate) fn between(&self, next: &Self, strides: [f32; 2], s: f32) -> Self {
         let share = smooth_step(s);
-        let mix = |from: f32, to: f32| from + share * (to - from);
+        let [before, after] = strides.map(|stride| stride.max(LEAST_STRIDE));
+        let reaching = share * after / (before + share * (after - before));
+        let mix = |from: f32, to: f32, share: f32| from + share * (to - from);
         Self {
-            reach: [0, 1].map(|axis| mix(self.reach[axis], next.reach[axis])),
-            forwardness: mix(self.forwardness, next.forwardness),
-            turn: mix(self.turn, next.turn),
-            widening: mix(self.widening, next.widening),
+            reach: [0, 1].map(|axis| mix(self.reach[axis], next.reach[axis], reaching)),
+            forwardness: mix(self.forwardness, next.forwardness, share),
+            turn: mix(self.turn, next.turn, share),
+            widening: mix(self.widening, next.widening, share),
         }
     }
 }

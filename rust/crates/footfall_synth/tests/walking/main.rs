@@ -15,6 +15,7 @@ mod running;
 mod slow;
 mod standing;
 mod strafing;
+mod turning_back;
 mod world;
 
 use footfall_core::rotation::heading;

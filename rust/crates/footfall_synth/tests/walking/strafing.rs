@@ -10,7 +10,7 @@ use footfall_core::{Joint, Side, Skeleton};
 use footfall_synth::Controls;
 use glam::Vec3;
 
-fn going(direction_rad: f32, speed_mps: f32) -> Controls {
+pub(crate) fn going(direction_rad: f32, speed_mps: f32) -> Controls {
     Controls {
         speed_mps,
         direction_rad,

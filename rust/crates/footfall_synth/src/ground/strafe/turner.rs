@@ -55,6 +55,8 @@ pub(crate) struct Turner<'a> {
     pub(crate) leg_length: f32,
     /// Radians.
     pub(crate) own_facing: f32,
+    /// Factors on the legs' reach, before the step and after it.
+    pub(crate) strides: [f32; 2],
 }
 
 /// State of a swinging foot.
@@ -96,7 +98,7 @@ impl Turner<'_> {
         let meeting = landed - standing;
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let part = index as f32 / last as f32;
-            let strafe = before.between(now, part);
+            let strafe = before.between(now, self.strides, part);
             let mirrored = (timing.terminal + last).saturating_sub(index).min(last);
             let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
             let legs = &mut generated[index].legs;
@@ -124,7 +126,7 @@ impl Turner<'_> {
             let meeting_part = (part - MEETING_FROM) / (1.0 - MEETING_FROM);
             let rise = rise + smooth_step(meeting_part) * meeting;
             let redirected = if timing.airborne {
-                before.between(now, (part / REDIRECTED_BY).min(1.0))
+                before.between(now, self.strides, (part / REDIRECTED_BY).min(1.0))
             } else {
                 strafe
             };
