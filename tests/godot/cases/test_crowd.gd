@@ -259,6 +259,28 @@ func test_walkers_far_away_find_the_ground() -> void:
 	slope.free()
 
 
+func test_who_stands_from_the_beginning_stands_on_the_ground() -> void:
+	var floor_body := StaticBody3D.new()
+	var shape := CollisionShape3D.new()
+	var box := BoxShape3D.new()
+	box.size = Vector3(20, 1, 20)
+	shape.shape = box
+	shape.position.y = -0.7
+	floor_body.add_child(shape)
+	add_child(floor_body)
+	var crowd := add_crowd(0, func(made: GaitCrowd3D) -> void:
+		made.behaviour = GaitCrowd3D.SCRIPTED
+		made.ground_mask = 1)
+	# A navigation map is above the ground.
+	var ids: PackedInt32Array = crowd.add_agents([Vector3(1, 0, 1)], [0.0])
+	crowd.set_speeds([0.0], ids)
+	await get_tree().physics_frame
+	await get_tree().physics_frame
+	_advance(crowd, 4)
+	check_near(crowd.get_positions(ids)[0].y, -0.2, 1e-3, "height of a walker that has taken no step")
+	floor_body.free()
+
+
 func test_full_skeletons_walk_as_their_walkers_do() -> void:
 	var camera := Camera3D.new()
 	add_child(camera)

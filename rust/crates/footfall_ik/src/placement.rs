@@ -192,7 +192,11 @@ impl FootPlacer {
         if !input.airborne {
             let mut feet = self.feet;
             for (index, foot) in feet.iter_mut().enumerate() {
-                if let Some(step) = self.next_step(&mut scene, input, index, false) {
+                let landing = input.landings[index].filter(|landing| !landing.is_now());
+                if foot.mode == Mode::Locked && landing.is_none() {
+                    // What was announced was its contact.
+                    foot.plan = None;
+                } else if let Some(step) = self.next_step(&mut scene, input, index, false) {
                     foot.plan(&mut scene, &step);
                 }
             }

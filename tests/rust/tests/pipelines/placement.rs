@@ -1,8 +1,9 @@
 //! Feet on slopes, stairs, rough ground and things that move: where soles stand, how still, and how smoothly legs go.
 
 use core::f32::consts::{FRAC_PI_2, PI};
-use footfall_core::{Side, Skeleton};
-use footfall_ik::placement::{Frame, PlacementConfig};
+use footfall_core::rotation::from_heading;
+use footfall_core::{Pose, Side, Skeleton};
+use footfall_ik::placement::{Frame, PlacementConfig, PlacementInput};
 use footfall_synth::Controls;
 use footfall_tests::terrain::{PlacedWalker, Relief};
 use footfall_tests::walkers::{self, most_acceleration};
@@ -293,6 +294,52 @@ fn flat_ground_changes_nothing() {
             // In the frame in which a foot leaves the ground the lock has the last word.
             assert!(turned < 0.02, "turned by {turned}");
         }
+    }
+}
+
+/// Walkers of a crowd report contacts to the nearest frame, up to two before the landing: feet went back to where they had last landed, and hips sank to the ground.
+#[test]
+fn contacts_may_be_reported_before_their_landings() {
+    const EARLY_SECS: f32 = 2.1 * DT;
+    let mut terrain = Relief::still(|_, _| 0.0);
+    let controls = Test::walk(1.3).controls;
+    for seed in 1..4 {
+        let mut walker = walker(seed);
+        let mut announced = [None; 2];
+        let mut landed = 0;
+        for _ in 0..600 {
+            let mut pose = Pose::default();
+            walker.generator.step(DT, &controls, &mut pose);
+            let place = walker.generator.start_from_character();
+            let world_from_floor = Frame {
+                position: place.position,
+                rotation: from_heading(place.heading),
+            };
+            let landings = walker.generator.landings();
+            let mut contacts = walker.contacts();
+            for (foot, next) in landings.iter().enumerate() {
+                // A foot that still stands is not there yet.
+                if let Some(next) = next.filter(|_| !contacts[foot]) {
+                    announced[foot] = Some(world_from_floor.point(next.flat.position));
+                    contacts[foot] = next.secs < EARLY_SECS;
+                }
+            }
+            let input = PlacementInput {
+                world_from_floor,
+                contacts: Some(contacts),
+                landings,
+                airborne: false,
+            };
+            walker.placer.step(DT, &input, &mut terrain, &mut pose);
+            for (placed, at) in walker.placer.feet().iter().zip(announced) {
+                if let Some(at) = at.filter(|_| placed.landed) {
+                    landed += 1;
+                    let off = placed.sole.position.distance(at);
+                    assert!(off < 0.02, "{seed}: landed {off} m from its place");
+                }
+            }
+        }
+        assert!(landed > 12, "{landed} landings");
     }
 }
 

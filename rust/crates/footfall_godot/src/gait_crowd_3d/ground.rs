@@ -11,7 +11,7 @@ use godot::prelude::*;
 /// Range above and below a walker in which ground is searched for, metres.
 const GROUND_REACH_M: f32 = 1.5;
 
-/// Finds the ground under walkers that have just put a foot down.
+/// Finds the ground under walkers that have just put a foot down, and under new ones.
 pub(super) fn find(walkers: &mut Crowd, host: &Gd<Node3D>, mask: u32) {
     if mask == 0 {
         return;
@@ -26,17 +26,25 @@ pub(super) fn find(walkers: &mut Crowd, host: &Gd<Node3D>, mask: u32) {
     let mut rays = PhysicsGround::new(mask, 0.0, &Array::new());
     let mut ground = rays.now(space);
     for index in 0..walkers.agents().len() {
-        if !walkers.has_landed(index) {
+        let has_landed = walkers.has_landed(index);
+        let agent = &mut walkers.agents_mut()[index];
+        let is_new = agent.searches > 0 && agent.is_made();
+        if !has_landed && !is_new {
             continue;
         }
-        let agent = &mut walkers.agents_mut()[index];
+        agent.searches = agent.searches.saturating_sub(1);
         // A little ahead, where it will be in the middle of the step.
         let velocity = agent.velocity();
         let ahead = agent.place + 0.25 * Vec3::new(velocity.x, 0.0, velocity.y);
         let from = world.point(ahead + Vec3::Y * GROUND_REACH_M);
         let way = world.up() * (-2.0 * GROUND_REACH_M);
         if let Some(hit) = ground.cast(from, way) {
-            agent.ground_m = world.local_point(hit.position).y;
+            let height = world.local_point(hit.position).y;
+            if is_new {
+                agent.put_on(height);
+            } else {
+                agent.ground_m = height;
+            }
         }
     }
 }

@@ -40,6 +40,16 @@ pub struct Landing {
     pub ankles: [Vec3; 2],
 }
 
+/// Time before a landing from which a contact is taken for it, seconds: an animation may report a contact some frames early.
+const NOW_SECS: f32 = 0.05;
+
+impl Landing {
+    /// Returns true for the landing of a contact that is due or reported already.
+    pub(super) fn is_now(&self) -> bool {
+        self.secs < NOW_SECS
+    }
+}
+
 /// One foot of the animation, relative to its floor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Animated {
@@ -302,7 +312,8 @@ impl Foot {
         animated: &Animated,
     ) {
         // One that is planned already for the step to come is not for this contact.
-        let planned = self.plan.filter(|_| animated.landing.is_none());
+        let to_come = animated.landing.is_some_and(|next| !next.is_now());
+        let planned = self.plan.filter(|_| !to_come);
         let planned = planned.map(|plan| plan.foothold);
         let hold = planned.or_else(|| {
             // Where the foot is now and not where the animation has it, so that it need not slide.

@@ -15,6 +15,9 @@ use glam::{Vec2, Vec3};
 /// Time constant with which a walker rises and falls with the ground, seconds.
 const RISE_SECS: f32 = 0.15;
 
+/// Frames in which the ground is searched for under a new walker: bodies that come with it are there some frames later.
+const SEARCHES: u8 = 8;
+
 /// A tint that changes nothing: red, green, blue and opacity.
 pub(super) const WHITE: [f32; 4] = [1.0; 4];
 
@@ -43,6 +46,8 @@ pub struct Agent {
     pub heading: f32,
     /// Height of the ground to which it rises or falls, metres.
     pub ground_m: f32,
+    /// Frames that are left to find the ground under a walker that has taken no step.
+    pub searches: u8,
     pub(super) velocity: Vec2,
     /// Weights of its styles.
     pub(super) mixture: StyleMixture,
@@ -80,6 +85,7 @@ impl Agent {
             place,
             heading,
             ground_m: place.y,
+            searches: SEARCHES,
             velocity: Vec2::ZERO,
             mixture: StyleMixture::default(),
             route: Vec::new(),
@@ -197,6 +203,13 @@ impl Agent {
             let blend = 1.0 - (-dt_secs / 0.3).exp();
             self.velocity += (Vec2::new(step.x, step.z) / dt_secs - self.velocity) * blend;
         }
+    }
+
+    /// Stands on ground of this height from now on.
+    pub fn put_on(&mut self, ground_m: f32) {
+        self.ground_m = ground_m;
+        self.place.y = ground_m;
+        self.searches = 0;
     }
 
     /// Places for drawing, after a motion from this place and heading.
