@@ -40,10 +40,13 @@ func _terrace() -> void:
 	var front := TownPlan.TERRACE_FRONT
 	var mason := TownMason.new()
 	mason.block(Vector3(-half, -0.2, TownPlan.TERRACE_BACK), Vector3(half, TownPlan.RISE, front), STONE)
-	for step: int in TownPlan.STEPS - 1:
+	for step: int in TownPlan.STEPS:
 		var reach := front + TownPlan.STEP.x * (TownPlan.STEPS - 1 - step)
-		var tread := STONE.lightened(0.06 if step % 2 == 0 else 0.0)
-		mason.block(Vector3(-TownPlan.STAIR_HALF, TownPlan.STEP.y * step, front), Vector3(TownPlan.STAIR_HALF, TownPlan.STEP.y * (step + 1), reach), tread)
+		var top := TownPlan.STEP.y * (step + 1)
+		if reach > front:
+			mason.block(Vector3(-TownPlan.STAIR_HALF, TownPlan.STEP.y * step, front), Vector3(TownPlan.STAIR_HALF, top, reach), STONE.darkened(0.25))
+		# Slabs over darker risers, so that steps are told apart in the shade.
+		mason.slab(Vector3(-TownPlan.STAIR_HALF, top - 0.035, reach - TownPlan.STEP.x), Vector3(TownPlan.STAIR_HALF, top + 0.002, reach + 0.012), STONE.lightened(0.08))
 	var far := front + TownPlan.RAMP_WIDTH
 	mason.bar([Vector2(TownPlan.RAMP_FOOT, 0), Vector2(TownPlan.RAMP_HEAD, 0), Vector2(TownPlan.RAMP_HEAD, TownPlan.RISE)], front, far, STONE)
 	mason.block(Vector3(TownPlan.RAMP_HEAD, 0, front), Vector3(half, TownPlan.RISE, far), STONE)

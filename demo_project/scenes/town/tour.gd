@@ -4,9 +4,9 @@ extends RefCounted
 
 ## Seconds at which a view begins → the camera's place, what it looks at, and where the player is then, with its heading in degrees, if it is elsewhere.
 const VIEWS: Array[Array] = [
-	[0.0, Vector3(1.2, 1.8, 15.3), Vector3(6.6, 1.5, 5.0), Vector3(5.4, 0, 12.2), 155.0],
-	[3.7, Vector3(5.7, 1.3, -2.4), Vector3(9.5, 1.05, 0.4)],
-	[6.3, Vector3(-2.8, 2.2, -4.6), Vector3(0.8, 1.5, -11.0), Vector3(2.3, 0, -6.3), 195.0],
+	[0.0, Vector3(7.6, 2.0, 13.9), Vector3(6.6, 1.0, 7.2), Vector3(5.7, 0, 11.4), 155.0],
+	[3.7, Vector3(6.7, 1.45, -4.3), Vector3(9.3, 1.05, -0.9)],
+	[6.3, Vector3(0.2, 1.4, -7.6), Vector3(2.4, 1.2, -10.8), Vector3(2.7, 0, -8.1), 180.0],
 	[12.0, Vector3(-7.7, 1.75, -6.2), Vector3(-10.7, 0.75, -3.3), Vector3(-10.5, 0, -0.6), 180.0],
 ]
 ## Seconds → what the player does then: where it goes (infinite: straight north), at which speed, and true for a jump.
@@ -14,7 +14,7 @@ const ORDERS: Array[Array] = [
 	[0.0, Vector3(9.0, 0, 3.0), 1.4, false],
 	[1.6, Vector3(9.4, 0, -3.2), 3.4, false],
 	[4.7, Vector3(9.4, 0, -3.2), 3.4, true],
-	[6.3, Vector3(0.6, TownPlan.RISE, -13.4), 1.4, false],
+	[6.3, Vector3(2.2, TownPlan.RISE, -13.4), 1.4, false],
 	[12.0, Vector3.INF, 1.4, false],
 	[14.65, Vector3.INF, 1.4, true],
 	[15.8, Vector3.INF, 0.0, false],
