@@ -32,12 +32,12 @@ use crate::rocker::{RockerFoot, foot_attitude, settled_pitch};
 use carry::Moment;
 pub use config::{PlacementConfig, PlacementInput};
 pub use contact::ContactThresholds;
-pub use foot::Landing;
 use foot::{Animated, Foot, MAX_PITCH, Mode};
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, Pose, Side, Skeleton};
 pub use frame::Frame;
 use glam::{Quat, Vec3};
+pub use landings::Landing;
 use pelvis::Ride;
 pub use terrain::{Ground, SupportId, Terrain};
 

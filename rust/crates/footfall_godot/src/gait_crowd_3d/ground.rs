@@ -28,11 +28,10 @@ pub(super) fn find(walkers: &mut Crowd, host: &Gd<Node3D>, mask: u32) {
     for index in 0..walkers.agents().len() {
         let has_landed = walkers.has_landed(index);
         let agent = &mut walkers.agents_mut()[index];
-        let is_new = agent.searches > 0 && agent.is_made();
+        let is_new = agent.searches_ground();
         if !has_landed && !is_new {
             continue;
         }
-        agent.searches = agent.searches.saturating_sub(1);
         // A little ahead, where it will be in the middle of the step.
         let velocity = agent.velocity();
         let ahead = agent.place + 0.25 * Vec3::new(velocity.x, 0.0, velocity.y);

@@ -1,8 +1,9 @@
 //! Foothold of the step that has just begun.
 
-use crate::placement::foot::{Landing, Scene};
+use crate::placement::foot::Scene;
 use crate::placement::foothold::{ASKEW_COST, Foothold, MOST_ASIDE_M, SHIFT_COST, Search};
 use crate::placement::frame::Frame;
+use crate::placement::landings::Landing;
 use crate::placement::profile::Profile;
 use crate::placement::terrain::Terrain;
 use crate::rocker::RockerFoot;

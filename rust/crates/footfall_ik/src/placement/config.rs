@@ -1,8 +1,8 @@
 //! Input of placement: settings, and each frame of the animation.
 
 use crate::placement::contact::ContactThresholds;
-use crate::placement::foot::Landing;
 use crate::placement::frame::Frame;
+use crate::placement::landings::Landing;
 
 /// Settings of foot placement.
 #[derive(Clone, Copy, Debug, PartialEq)]

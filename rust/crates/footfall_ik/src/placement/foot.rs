@@ -8,6 +8,7 @@ use crate::placement::PlacementConfig;
 use crate::placement::correction::{Correction, Residual};
 use crate::placement::foothold::{Foothold, MOST_ASIDE_M, Search};
 use crate::placement::frame::Frame;
+use crate::placement::landings::Landing;
 use crate::placement::pelvis::Follower;
 use crate::placement::swing::PlannedFoothold;
 use crate::placement::terrain::Terrain;
@@ -26,29 +27,6 @@ pub(super) const FOLLOW_SECS: f32 = 0.08;
 pub(super) const REPLANT_SECS: f32 = 0.22;
 /// Duration of the lowering of a heel that landed after its toes, seconds.
 const LOWER_SECS: f32 = 0.16;
-
-/// Place where the animation will put a foot, relative to the animation's floor now.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Landing {
-    /// The flat sole: origin on the floor under the ankle, +Z to the toes.
-    pub flat: Frame,
-    /// Time until it lands, seconds.
-    pub secs: f32,
-    /// Positions of the hips and both ankles then, metres.
-    pub hips: Vec3,
-    /// The left ankle and the right.
-    pub ankles: [Vec3; 2],
-}
-
-/// Time before a landing from which a contact is taken for it, seconds: an animation may report a contact some frames early.
-const NOW_SECS: f32 = 0.05;
-
-impl Landing {
-    /// Returns true for the landing of a contact that is due or reported already.
-    pub(super) fn is_now(&self) -> bool {
-        self.secs < NOW_SECS
-    }
-}
 
 /// One foot of the animation, relative to its floor.
 #[derive(Clone, Copy, Debug)]

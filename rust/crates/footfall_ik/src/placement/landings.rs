@@ -1,4 +1,4 @@
-//! Steps whose landings the animation announces.
+//! Landings that the animation announces, and the steps that lead there.
 
 use crate::placement::aim::Step;
 use crate::placement::effort::slowed_by;
@@ -12,6 +12,29 @@ use glam::Vec3;
 const SAME_SHARE: f32 = 0.02;
 /// Grade above which a run becomes a walk.
 const STEEP: f32 = 0.25;
+
+/// Time before a landing from which a contact is taken for it, seconds: an animation may report a contact some frames early.
+const NOW_SECS: f32 = 0.05;
+
+/// Place where the animation will put a foot, relative to the animation's floor now.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Landing {
+    /// The flat sole: origin on the floor under the ankle, +Z to the toes.
+    pub flat: Frame,
+    /// Time until it lands, seconds.
+    pub secs: f32,
+    /// Positions of the hips and both ankles then, metres.
+    pub hips: Vec3,
+    /// The left ankle and the right.
+    pub ankles: [Vec3; 2],
+}
+
+impl Landing {
+    /// Returns true for the landing of a contact that is due or reported already.
+    pub(super) fn is_now(&self) -> bool {
+        self.secs < NOW_SECS
+    }
+}
 
 impl FootPlacer {
     /// Share of its speed that a walker keeps on the ground under it and on that ahead.

@@ -47,7 +47,7 @@ pub struct Agent {
     /// Height of the ground to which it rises or falls, metres.
     pub ground_m: f32,
     /// Frames that are left to find the ground under a walker that has taken no step.
-    pub searches: u8,
+    searches: u8,
     pub(super) velocity: Vec2,
     /// Weights of its styles.
     pub(super) mixture: StyleMixture,
@@ -203,6 +203,13 @@ impl Agent {
             let blend = 1.0 - (-dt_secs / 0.3).exp();
             self.velocity += (Vec2::new(step.x, step.z) / dt_secs - self.velocity) * blend;
         }
+    }
+
+    /// Returns true in the first frames of its walk, until it is [put on](Self::put_on) the ground.
+    pub fn searches_ground(&mut self) -> bool {
+        let searches = self.searches > 0 && self.is_made();
+        self.searches -= u8::from(searches);
+        searches
     }
 
     /// Stands on ground of this height from now on.
