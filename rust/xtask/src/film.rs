@@ -12,7 +12,7 @@ const PICTURE: &str = "demo_project/pictures/tour.webp";
 const SIZE: (u32, u32) = (560, 315);
 const RATE_HZ: u32 = 20;
 /// Quality of its pictures, from 0 to 100: the film keeps to the size that a file of the repository may have.
-const QUALITY: u32 = 40;
+const QUALITY: u32 = 36;
 
 /// Films the tour of the town.
 ///
