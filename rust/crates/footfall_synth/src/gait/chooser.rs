@@ -170,7 +170,7 @@ impl StepChooser {
         let most = gait.most_change_mps(slows);
         *velocity_mps = match gait {
             Gait::Walk => {
-                let most = if forwards && is_forwards(controls.velocity_mps) {
+                let most = if forwards && (stands || is_forwards(controls.velocity_mps)) {
                     most
                 } else {
                     most.min(ASIDE_MPS2 * left as f32)
