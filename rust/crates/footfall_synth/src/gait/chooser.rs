@@ -45,7 +45,7 @@ const CLOSED_FROM: f64 = 0.45;
 const HARDEST_BRAKING_MPS2: f32 = 13.0;
 const KEPT_SHARE: f32 = 0.6;
 const BRISK_MPS: [f32; 2] = [0.7, 1.1];
-/// Largest sideways share of the way forwards with which a step can still end the walk.
+/// Largest sideways share of the way forwards with which a velocity counts as forwards: such a step can still end the walk.
 const STRAIGHT: f32 = 0.2;
 
 /// Gaits of one body, each with its paces.
@@ -315,7 +315,7 @@ impl StepChooser {
     }
 }
 
-/// Returns true for a velocity forwards, or nearly so.
+/// Returns true for a velocity forwards, or nearly so ([`STRAIGHT`]).
 fn is_forwards(velocity_mps: Vec2) -> bool {
     velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y
 }

@@ -29,10 +29,7 @@ impl Planter {
             let strafe = strafe.lengthened(self.flat_way(timing, generated, own_facing), wanted_m);
             // A step that ends a walk brings the feet together.
             let strafe = if timing.rests {
-                Strafe {
-                    widening: 0.0,
-                    ..strafe
-                }
+                strafe
             } else {
                 strafe.spread(generated, leg_length)
             };
