@@ -36,6 +36,7 @@ mod strafe;
 mod support;
 mod swing;
 mod travel;
+mod turning;
 
 pub(crate) use arrival::{Arrival, landings};
 pub(crate) use course::Course;
@@ -48,3 +49,4 @@ pub(crate) use planter::Planter;
 pub(crate) use planter_state::{Airborne, Lean, PlanterState};
 pub(crate) use speed_change::SpeedChange;
 pub(crate) use strafe::Strafe;
+pub(crate) use turning::spread;

@@ -20,6 +20,11 @@ const LAST_SECS: f64 = 0.39;
 const PIVOT_RADPS: [f32; 2] = [1.5, 2.5];
 const PIVOT_SECS: f64 = 0.45;
 
+/// Turn of a step on the spot, radians, and its least duration, seconds: quicker turns take quicker steps. From this speed on, in m/s, steps are not on the spot.
+const SPOT_RAD: f64 = 0.7;
+const SPOT_LEAST_SECS: f64 = 0.35;
+const SPOT_MPS: f32 = 0.6;
+
 /// Differences between the velocity of a step and the requested one from which steps get quicker, and at which they last this long at most, m/s and seconds. Who turns back the way they
 /// came passes through a step that hardly travels, and does not dwell on it.
 const REVERSAL_MPS: [f32; 2] = [0.3, 0.8];
@@ -220,11 +225,16 @@ impl StepChooser {
         }
     }
 
-    /// Returns the pace of a walked step of this velocity: quicker where it turns, or where its velocity is far from the requested one.
+    /// Returns the pace of a walked step of this velocity: quicker where it turns, most of all on the spot, or where its velocity is far from the requested one.
     fn agile(&self, mut pace: Pace, controls: &StepControls, velocity_mps: Vec2) -> Pace {
         let missing_mps = controls.velocity_mps.distance(velocity_mps);
+        let turn_rate = controls.turn_rate.abs();
+        let spot_secs = (SPOT_RAD / f64::from(turn_rate)).max(SPOT_LEAST_SECS);
+        let fastest_mps = velocity_mps.length().max(controls.velocity_mps.length());
+        let travels = smooth_step(fastest_mps / SPOT_MPS);
         for (share, most_secs) in [
-            (between(PIVOT_RADPS, controls.turn_rate.abs()), PIVOT_SECS),
+            (between(PIVOT_RADPS, turn_rate), PIVOT_SECS),
+            (1.0 - travels, spot_secs),
             (between(REVERSAL_MPS, missing_mps), REVERSAL_SECS),
         ] {
             let quicker = self.walk.within(pace, most_secs);

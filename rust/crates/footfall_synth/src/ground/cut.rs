@@ -73,6 +73,7 @@ impl Cut<'_> {
             ground_position: now.ground_position,
             ground_velocity: Some((now.ground_position - before.ground_position) / self.frame_secs),
             stride: self.begun.stride + share * (self.ended.stride - self.begun.stride),
+            spread: self.begun.spread + share * (self.ended.spread - self.begun.spread),
             strafe: self.begun.strafe.between(&self.ended.strafe, strides, s),
             balance: self.begun.balance.lerp(self.ended.balance, share),
             lean: bend.at(s),

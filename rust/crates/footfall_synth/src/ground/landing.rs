@@ -43,7 +43,11 @@ impl Planter {
         // The foot points to where the body will have turned by the middle of its stance.
         let lead = 0.5 * course.turn_rate * course.step_secs;
         let foot = &self.feet[side.index()];
-        let heading = heading + lead + leg.heading() + self.turn_to_flat(generated, timing);
+        let heading = heading
+            + lead
+            + leg.heading()
+            + self.turn_to_flat(generated, timing)
+            + self.toes_out(side, course);
         let mut plant = foot.plant_under(ankle, heading, leg.pitch);
         let reach = self.landing_extension() * self.leg_lengths[side.index()];
         plant.flat_ankle += within_reach(foot.stand(&plant, leg.pitch).ankle - hip, reach);

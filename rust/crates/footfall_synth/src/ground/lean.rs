@@ -54,7 +54,7 @@ const TIPPING_RADPS2: f32 = 8.0;
 /// the hips already.
 ///
 /// In turning runs of O3DE's actor hips are 4 cm lower than straight ahead at 2 to 3 m/s², and 5 to 7 at 3 to 4.
-const SINKING: f32 = 0.014;
+const SINKING: f32 = 0.016;
 const FIRM_MPS2: f32 = 1.6;
 const SOFT_MPS2: f32 = 0.8;
 

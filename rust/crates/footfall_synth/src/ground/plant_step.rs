@@ -6,6 +6,7 @@ use super::generated::{GeneratedFrame, free_foot};
 use super::planter::Planter;
 use super::strafe::{Strafe, Turner};
 use super::swing::Swing;
+use super::turning::spread;
 use crate::plan::StepTiming;
 use footfall_core::Side;
 use footfall_core::rotation::from_heading;
@@ -132,6 +133,7 @@ impl Planter {
         self.depart(generated, timing, out);
         generated[timing.frames].legs[trailing.index()].target = ends[2].0;
         self.state.plants[trailing.index()] = next_plant;
+        self.state.spread = spread(&self.state);
         *timing
     }
 

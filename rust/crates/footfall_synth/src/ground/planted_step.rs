@@ -177,6 +177,7 @@ impl PlantedStep {
             facing - strafe.turn,
             frames,
         );
+        planter.spread_turning(generated, &timing, placing.turn_rate);
         planter.lean_over(&bend, timing.leading, generated);
         planter.plant_step(generated, &timing, course, frames);
         planter.sink(&bend, frames);

@@ -45,6 +45,7 @@ impl Planter {
             ground_position: Vec3::ZERO,
             ground_velocity: None,
             stride: 1.0,
+            spread: 0.0,
             strafe: Strafe::NONE,
             balance: Vec2::ZERO,
             airborne: None,

@@ -18,6 +18,8 @@ pub(crate) struct PlanterState {
     pub(crate) ground_velocity: Option<Vec3>,
     /// Factor on the legs' reach at the end of the last step.
     pub(crate) stride: f32,
+    /// Outward shift of each foot for the turn at the end of the last step, as a share of the leg's length.
+    pub(crate) spread: f32,
     /// Strafe of the last step.
     pub(crate) strafe: Strafe,
     /// Shift of both feet for the balance of the last landing, to the left and forwards.

@@ -15,6 +15,7 @@ mod running;
 mod slow;
 mod standing;
 mod strafing;
+mod turning;
 mod turning_back;
 mod world;
 

@@ -1,6 +1,6 @@
 //! Feet and hips in a saved state.
 
-use crate::ground::{Lean, PlanterState, Strafe};
+use crate::ground::{Lean, PlanterState, Strafe, spread};
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -39,7 +39,7 @@ impl Feet {
     }
 
     pub(super) fn planter(&self) -> PlanterState {
-        PlanterState {
+        let mut planter = PlanterState {
             plants: self.plants.map(|[x, y, z, heading]| Plant {
                 flat_ankle: Vec3::new(x, y, z),
                 heading,
@@ -51,11 +51,14 @@ impl Feet {
             ground_position: self.ground_position.into(),
             ground_velocity: self.ground_velocity.map(Vec3::from),
             stride: self.stride,
+            spread: 0.0,
             strafe: self.strafe,
             balance: Vec2::ZERO,
             airborne: None,
             lean: Lean::default(),
-        }
+        };
+        planter.spread = spread(&planter);
+        planter
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {
