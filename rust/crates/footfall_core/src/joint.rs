@@ -77,6 +77,11 @@ impl Joint {
         self >= Self::LeftUpperLeg
     }
 
+    /// Returns true when the joint is one of the arms, shoulders included.
+    pub fn is_of_arm(self) -> bool {
+        (Self::LeftShoulder..Self::LeftUpperLeg).contains(&self)
+    }
+
     /// Position in [`Joint::ALL`] and in every array of per-joint values.
     pub const fn index(self) -> usize {
         self as usize

@@ -6,7 +6,7 @@ use crate::jumping::BESIDE_COUNT;
 /// Posture of crouching people.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CrouchModel {
-    /// The deepest crouch of the recordings beside the same person upright: [`BESIDE_COUNT`] numbers, the same left and right. The hips' way upwards
+    /// The deepest crouch of the recordings beside the same person upright: [`BESIDE_COUNT`] numbers, the same left and right but for the arms. The hips' way upwards
     /// is negative; legs are 0, for they follow from the feet.
     pub beside: Vec<f64>,
     /// Fastest that people go as low as that, leg lengths a second.

@@ -20,4 +20,4 @@ pub use kinds::Gait;
 pub(crate) use kinds::{FASTEST_WALK_MPS, GRAVITY_MPS2, STOPPABLE_MPS, WIDEST_RUN_RAD};
 pub(crate) use pace::{Pace, PaceTable, SAMPLES, tempo_and_stride};
 pub(crate) use request::{Manner, Passed, StepControls, StepRequest};
-pub(crate) use stand::{Amplitude, Posture, standing_features, standing_posture};
+pub(crate) use stand::{Amplitude, Posture, mean_posture, standing_features, standing_posture};

@@ -9,7 +9,7 @@ mod crouch;
 mod jump;
 mod push;
 
-use crate::gait::standing_features;
+use crate::gait::{Posture, standing_features};
 use body::Body;
 pub(crate) use climb::ClimbMoment;
 use crouch::Crouch;
@@ -28,6 +28,7 @@ use std::sync::Arc;
 pub(crate) struct MoveTables {
     jump: Option<JumpTables>,
     crouch: Option<CrouchModel>,
+    standing: Posture,
 }
 
 /// Moves of one walker.
@@ -43,12 +44,14 @@ pub(crate) struct Moves {
 
 impl MoveTables {
     pub(crate) fn of(model: &GaitModel) -> Self {
+        let standing = standing_features(model);
         Self {
             jump: model
                 .jump
                 .as_ref()
-                .map(|jump| JumpTables::of(jump, &standing_features(model))),
+                .map(|jump| JumpTables::of(jump, &standing)),
             crouch: model.crouch.clone(),
+            standing,
         }
     }
 }
@@ -59,7 +62,7 @@ impl Moves {
         let tables = Arc::clone(tables);
         let body = Body::new(skeleton);
         Self {
-            crouch: Crouch::new(tables.crouch.as_ref(), body.leg_length),
+            crouch: Crouch::new(tables.crouch.as_ref(), &tables.standing, body.leg_length),
             tables,
             body,
             jump: None,

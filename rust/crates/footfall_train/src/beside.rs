@@ -2,10 +2,26 @@
 
 use crate::standing::spread_chains;
 use footfall_core::rotation::{blend_near, from_heading, heading, log_map};
-use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton};
-use footfall_model::layout::{feature_offset, mirror};
-use footfall_model::{BESIDE_COUNT, FEATURE_COUNT};
+use footfall_core::{JOINT_COUNT, Joint, ModelPose, Pose, Side, Skeleton};
+use footfall_model::layout::{decode, feature_offset, mirror};
+use footfall_model::{BESIDE_COUNT, FEATURE_COUNT, StandingModel};
 use glam::{Quat, Vec3};
+
+/// Arms as a model carries them standing. People carry them in different ways: arms that go as far from there as somebody's go from another posture cross each other and the body.
+#[derive(Clone, Debug)]
+pub(crate) struct Arms {
+    rotations: [Quat; JOINT_COUNT],
+}
+
+impl Arms {
+    /// The arms of a model that stands like this.
+    pub(crate) fn of(standing: &StandingModel) -> Self {
+        let features: Vec<f32> = standing.posture.iter().map(|value| *value as f32).collect();
+        let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+        decode(&features, &mut rotations);
+        Self { rotations }
+    }
+}
 
 /// A posture seen from where the body faces.
 #[derive(Clone, Debug)]
@@ -55,6 +71,15 @@ impl Upright {
             mean.ankles = mean.ankles.lerp(posture.ankles, share);
         }
         Some(mean)
+    }
+
+    /// Gives the posture a share of the arms of a model.
+    pub(crate) fn carry_arms(&mut self, arms: &Arms, share: f32) {
+        for joint in Joint::ALL.into_iter().filter(|joint| joint.is_of_arm()) {
+            let index = joint.index();
+            let own = &mut self.pose.rotations[index];
+            *own = own.slerp(arms.rotations[index], share);
+        }
     }
 
     /// Height of the hips, metres.

@@ -1,9 +1,9 @@
 //! Crouching, as a part of a gait model.
 
-use crate::beside::{Upright, symmetric};
+use crate::beside::{Arms, Upright, symmetric};
 use footfall_core::{Clip, Joint};
 use footfall_model::layout::feature_offset;
-use footfall_model::{BESIDE_COUNT, CrouchModel, FEATURE_COUNT};
+use footfall_model::{BESIDE_COUNT, CrouchModel, FEATURE_COUNT, StandingModel};
 
 /// Least height of upright hips, and greatest height of crouching hips, as shares of their height
 /// in the T-pose.
@@ -32,8 +32,9 @@ pub struct LearnedCrouching {
 /// Sums over the frames of a crouching person.
 #[derive(Default)]
 struct Sums {
-    /// Of each number of a posture times how low it is, and of that squared.
+    /// Of each number of a posture times how low it is, and of that alone and squared.
     by_depth: Vec<f64>,
+    depth: f64,
     squared: f64,
     depths: Vec<f64>,
     speeds: Vec<f64>,
@@ -43,30 +44,44 @@ struct Sums {
 /// Learns how people crouch; each clip comes with its leading frames to leave out, and shows a person both upright and low. `None` if no clip
 /// has some seconds of crouching.
 ///
-/// Every number of a posture goes with how low the hips are: a regression through the upright posture, for people crouch in between as well.
-pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedCrouching> {
+/// The hips go as far ahead as they go down: a regression through the upright posture, for people crouch in between as well. Trunk, head and arms have their posture in any crouch, so
+/// theirs is a mean, in which deeper crouches count for more. The trunk is compared with the same person's upright one. Arms are compared with those of `standing`,
+/// from which the model crouches, if it has learned to stand.
+/// They stay different left and right: people hold one hand before the other, and even ones would meet.
+pub fn learn(
+    clips: &[(&Clip, usize)],
+    standing: Option<&StandingModel>,
+) -> Option<LearnedCrouching> {
+    let arms = standing.map(Arms::of);
     let mut sums = Sums {
         by_depth: vec![0.0; BESIDE_COUNT],
         ..Sums::default()
     };
     for (clip, skip) in clips {
-        sums.add(clip, *skip);
+        sums.add(clip, *skip, arms.as_ref());
     }
     if sums.secs < LEAST_SECS {
         return None;
     }
     let depth = quantile(&mut sums.depths);
-    let slopes = sums.by_depth.iter().map(|sum| sum / sums.squared);
-    let mut beside: Vec<f64> = slopes.map(|slope| depth * slope).collect();
+    let mut beside: Vec<f64> = sums.by_depth.iter().map(|sum| sum / sums.depth).collect();
+    beside[FEATURE_COUNT + 1] = depth * sums.by_depth[FEATURE_COUNT + 1] / sums.squared;
     for joint in Joint::ALL {
         if joint >= Joint::LeftUpperLeg {
             beside[feature_offset(joint)..][..3].fill(0.0);
         }
     }
     beside[FEATURE_COUNT] = -depth;
+    let even = symmetric(&beside);
+    for joint in Joint::ALL {
+        if !joint.is_of_arm() {
+            let at = feature_offset(joint);
+            beside[at..at + 3].copy_from_slice(&even[at..at + 3]);
+        }
+    }
     Some(LearnedCrouching {
         model: CrouchModel {
-            beside: symmetric(&beside),
+            beside,
             fastest: quantile(&mut sums.speeds).max(f64::MIN_POSITIVE),
         },
         secs: sums.secs,
@@ -74,7 +89,8 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedCrouching> {
 }
 
 impl Sums {
-    fn add(&mut self, clip: &Clip, skip: usize) {
+    /// Adds a clip; `arms` are those from which the model crouches, if they are not the person's own.
+    fn add(&mut self, clip: &Clip, skip: usize, arms: Option<&Arms>) {
         let rate = clip.frame_rate_hz;
         let (leg, height) = (clip.skeleton.mean_leg_length(), clip.skeleton.hip_height());
         let poses = clip.poses.get(skip..).unwrap_or_default();
@@ -86,9 +102,12 @@ impl Sums {
         if (upright.len() as f64) < LEAST_UPRIGHT_SECS * rate {
             return;
         }
-        let Some(standing) = Upright::mean(&upright) else {
+        let Some(mut standing) = Upright::mean(&upright) else {
             return;
         };
+        if let Some(arms) = arms {
+            standing.carry_arms(arms, 1.0);
+        }
         let reach = (0.5 * SPEED_SECS * rate) as usize;
         for (index, pose) in poses.iter().enumerate() {
             if pose.root_position.y > CROUCHED_SHARE * height {
@@ -99,6 +118,7 @@ impl Sums {
             for (sum, value) in self.by_depth.iter_mut().zip(&row) {
                 *sum += depth * value;
             }
+            self.depth += depth;
             self.squared += depth * depth;
             self.depths.push(depth);
             self.secs += 1.0 / rate;

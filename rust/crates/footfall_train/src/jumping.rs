@@ -1,11 +1,13 @@
 //! Two-footed jumps, as a part of a gait model.
 
-use crate::beside::{Upright, symmetric};
+use crate::beside::{Arms, Upright, symmetric};
 use footfall_core::Clip;
 use footfall_core::ease::smooth_step;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Joint, rotation};
-use footfall_model::{BESIDE_COUNT, JUMP_PHASES, JUMP_RESPONSES, JumpModel, JumpPhase};
+use footfall_model::{
+    BESIDE_COUNT, JUMP_PHASES, JUMP_RESPONSES, JumpModel, JumpPhase, StandingModel,
+};
 use footfall_motion::jumps::{Jump, two_footed_jumps};
 use glam::Vec3;
 
@@ -40,7 +42,10 @@ struct Sample {
 }
 
 /// Learns how people jump off both feet; each clip comes with its leading frames to leave out. `None` when they make fewer than three such jumps.
-pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
+///
+/// Postures are compared with the same person's before and after the jump. Arms are in between compared with those of `standing`, from which the model jumps, if it has learned to stand.
+pub fn learn(clips: &[(&Clip, usize)], standing: Option<&StandingModel>) -> Option<LearnedJumping> {
+    let arms = standing.map(Arms::of);
     let samples: Vec<Sample> = clips
         .iter()
         .flat_map(|(clip, skip)| {
@@ -48,7 +53,8 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
             let weight = 1.0 / jumps.len() as f64;
             jumps
                 .into_iter()
-                .map(move |jump| Sample::new(clip, &jump, weight))
+                .map(|jump| Sample::new(clip, &jump, weight, arms.as_ref()))
+                .collect::<Vec<_>>()
         })
         .collect();
     if samples.len() < LEAST_JUMPS {
@@ -80,7 +86,7 @@ pub fn learn(clips: &[(&Clip, usize)]) -> Option<LearnedJumping> {
 }
 
 impl Sample {
-    fn new(clip: &Clip, jump: &Jump, weight: f64) -> Self {
+    fn new(clip: &Clip, jump: &Jump, weight: f64, arms: Option<&Arms>) -> Self {
         let leg = clip.skeleton.mean_leg_length();
         let posture = |time: f64| {
             let pose = clip.pose_at(time).unwrap_or_default();
@@ -105,7 +111,10 @@ impl Sample {
                     let time = times[phase] + share * (times[phase + 1] - times[phase]);
                     // Who has landed stands a little otherwise than before.
                     let landed = (time - landing) / (end - landing);
-                    let standing = before.towards(&after, smooth_step(landed as f32));
+                    let mut standing = before.towards(&after, smooth_step(landed as f32));
+                    if let Some(arms) = arms {
+                        standing.carry_arms(arms, carried(phase, share as f32));
+                    }
                     symmetric(&posture(time).beside(&standing, leg))
                 })
                 .collect()
@@ -123,6 +132,17 @@ impl Sample {
             secs: core::array::from_fn(|phase| times[phase + 1] - times[phase]),
             knots,
         }
+    }
+}
+
+/// Returns how far arms are compared with the model's at part `share` of a phase: not at all where the jump begins and ends, for there the model stands.
+fn carried(phase: usize, share: f32) -> f32 {
+    if phase == 0 {
+        smooth_step(share)
+    } else if phase + 1 == JUMP_PHASES {
+        1.0 - smooth_step(share)
+    } else {
+        1.0
     }
 }
 

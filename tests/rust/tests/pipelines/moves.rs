@@ -2,11 +2,14 @@
 
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 
+use footfall_core::rotation::exp_map;
 use footfall_core::{Clip, Joint};
+use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_synth::{Controls, Move, StandConfig, synthesize_moves};
 use footfall_tests::data::repository;
 use footfall_train::{crouching, jumping};
+use glam::{DVec3, Quat};
 use std::sync::Arc;
 
 fn model() -> Arc<GaitModel> {
@@ -47,7 +50,7 @@ fn jumps_of_known_height_are_learned() {
         .map(|(index, rise)| row(1.0 + 3.0 * f64::from(index), 0.0, 0.0, rise))
         .collect();
     let clip = clip(&moves, 13.0);
-    let learned = jumping::learn(&[(&clip, 0)]).expect("four jumps");
+    let learned = jumping::learn(&[(&clip, 0)], None).expect("four jumps");
     assert_eq!(learned.jumps, heights.len());
     let leg = f64::from(clip.skeleton.mean_leg_length());
     let [least, _, most] = learned.model.rise.map(|rise| rise * leg);
@@ -65,8 +68,8 @@ fn jumps_of_known_height_are_learned() {
 #[test]
 fn who_only_walks_teaches_nothing() {
     let clip = clip(&[row(0.5, 1.3, 0.0, 0.0)], 8.0);
-    assert!(jumping::learn(&[(&clip, 0)]).is_none());
-    assert!(crouching::learn(&[(&clip, 0)]).is_none());
+    assert!(jumping::learn(&[(&clip, 0)], None).is_none());
+    assert!(crouching::learn(&[(&clip, 0)], None).is_none());
 }
 
 #[test]
@@ -77,8 +80,12 @@ fn a_crouch_of_known_depth_is_learned() {
         row(9.0, 0.0, 0.0, 0.0),
     ];
     let clip = clip(&moves, 12.0);
-    let learned = crouching::learn(&[(&clip, 0)]).expect("seven seconds");
     let model = model();
+    let learn = |clip: &Clip| {
+        let standing = model.standing.as_ref();
+        crouching::learn(&[(clip, 0)], standing).expect("seven seconds")
+    };
+    let learned = learn(&clip);
     let known = &model.crouch.as_ref().expect("a crouch").beside;
     let found = &learned.model.beside;
     // Steps bend the knees on top of it.
@@ -92,4 +99,38 @@ fn a_crouch_of_known_depth_is_learned() {
         known[at]
     );
     assert!(learned.secs > 6.0 && learned.model.fastest > 0.4);
+}
+
+/// Whoever carries the arms in another way, standing and crouched alike, teaches the same trunk and other arms.
+#[test]
+fn crouched_arms_are_those_of_the_recording_whatever_the_model_stands_like() {
+    let moves = [
+        row(0.0, 0.0, 0.0, 0.0),
+        row(2.0, 0.8, 1.0, 0.0),
+        row(9.0, 0.0, 0.0, 0.0),
+    ];
+    let clip = clip(&moves, 12.0);
+    let mut abducted = clip.clone();
+    let arm = Joint::LeftUpperArm;
+    let turn = Quat::from_rotation_z(0.4);
+    for pose in &mut abducted.poses {
+        let rotation = &mut pose.rotations[arm.index()];
+        *rotation *= turn;
+    }
+    let model = model();
+    let [plain, turned] = [&clip, &abducted].map(|clip| {
+        let standing = model.standing.as_ref();
+        let learned = crouching::learn(&[(clip, 0)], standing).expect("seven seconds");
+        learned.model.beside
+    });
+    let rotation = |beside: &[f64], joint: Joint| {
+        let at = feature_offset(joint);
+        exp_map(DVec3::from_slice(&beside[at..at + 3]).as_vec3())
+    };
+    let gained = rotation(&plain, arm).inverse() * rotation(&turned, arm);
+    assert!(gained.angle_between(turn) < 0.03, "{gained}");
+    for joint in [Joint::RightUpperArm, Joint::Spine, Joint::Neck] {
+        let gained = rotation(&plain, joint).angle_between(rotation(&turned, joint));
+        assert!(gained < 1e-3, "{joint:?}: {gained}");
+    }
 }

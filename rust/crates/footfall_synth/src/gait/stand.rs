@@ -58,6 +58,12 @@ pub(crate) fn standing_features(model: &GaitModel) -> Posture {
     standing_posture(row(&model.mean_features()))
 }
 
+/// Mean features of the steps of a model.
+pub(crate) fn mean_posture(model: &GaitModel) -> Posture {
+    let mean = model.mean_features();
+    core::array::from_fn(|index| mean[index] as f32)
+}
+
 /// Features of a standing walker, from the mean of a walk: made symmetric, on straight legs.
 pub(crate) fn standing_posture(mut mean: [f64; FEATURE_COUNT]) -> Posture {
     let mut mirrored = mean;

@@ -24,6 +24,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) shape: &'a StepShape,
     /// The standing posture before the step and after it.
     pub(crate) standing: [&'a Posture; 2],
+    /// The mean posture of the walk before the step and after it.
+    pub(crate) walking: [&'a Posture; 2],
     /// Turn rate at the end of the step, rad/s.
     pub(crate) turn_rate: f32,
     /// Headings under which the walk goes along +Z, before the step and after it, radians.
@@ -97,18 +99,19 @@ impl Placing<'_> {
         self.shape.amplitude.at(s, self.passed)
     }
 
-    /// Returns the standing posture at part `s` of the step, and its blend with the walk.
+    /// Returns the posture about which the body swings at part `s` of the step, and the blend of standing with these features of the walk.
     pub(super) fn grown(&self, walking: &[f32], s: f32) -> (Posture, Posture) {
         let amplitude = self.amplitude_at(s);
         let change = smooth_step(s);
-        let mut standing = *self.standing[0];
-        let mut grown = [0.0; FEATURE_COUNT];
-        let pairs = self.standing[1].iter().zip(walking);
-        for ((value, standing), (after, walking)) in grown.iter_mut().zip(&mut standing).zip(pairs)
-        {
-            *standing += change * (after - *standing);
-            *value = *standing + amplitude * (walking - *standing);
+        let between = |[before, after]: [&Posture; 2], index: usize| {
+            before[index] + change * (after[index] - before[index])
+        };
+        let (mut middle, mut grown) = ([0.0; FEATURE_COUNT], [0.0; FEATURE_COUNT]);
+        for (index, walking) in walking.iter().enumerate() {
+            let standing = between(self.standing, index);
+            middle[index] = standing + amplitude * (between(self.walking, index) - standing);
+            grown[index] = standing + amplitude * (walking - standing);
         }
-        (standing, grown)
+        (middle, grown)
     }
 }

@@ -135,10 +135,10 @@ impl PlantedStep {
                 continue;
             }
             let s = index as f32 / timing.frames as f32;
-            let (standing, mut blended) = placing.grown(features, s);
+            let (middle, mut blended) = placing.grown(features, s);
             decode_turned(
                 &mut blended,
-                &standing,
+                &middle,
                 before.between(&strafe, [stride_before, stride], s),
                 rotations,
             );

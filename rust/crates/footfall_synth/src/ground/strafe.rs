@@ -164,7 +164,7 @@ fn sway(features: &mut [f32; FEATURE_COUNT], middle: &[f32; FEATURE_COUNT], stra
             // A trunk sways sideways and nods in any walk; only its turning goes with the legs.
             Joint::Hips | Joint::Spine | Joint::Chest | Joint::UpperChest => at + 1..at + 2,
             Joint::Neck | Joint::Head => continue,
-            _ if is_arm(joint) => at..at + 3,
+            _ if joint.is_of_arm() => at..at + 3,
             _ => continue,
         };
         for index in swings {
@@ -186,18 +186,4 @@ fn keep_legs(rotations: &mut [Quat; JOINT_COUNT], before: Quat) {
         let thigh = &mut rotations[side.upper_leg().index()];
         *thigh = (back * *thigh).normalize();
     }
-}
-
-const fn is_arm(joint: Joint) -> bool {
-    matches!(
-        joint,
-        Joint::LeftShoulder
-            | Joint::LeftUpperArm
-            | Joint::LeftLowerArm
-            | Joint::LeftHand
-            | Joint::RightShoulder
-            | Joint::RightUpperArm
-            | Joint::RightLowerArm
-            | Joint::RightHand
-    )
 }

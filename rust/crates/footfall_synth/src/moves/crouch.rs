@@ -1,12 +1,18 @@
 //! Crouch: hips low over the same feet, with trunk and arms of crouching people.
 
 use super::body::{Beside, Body};
+use crate::gait::Posture;
 use footfall_core::ease::settled;
+use footfall_core::{JOINT_COUNT, Joint};
+use footfall_model::layout::decode;
 use footfall_model::{CrouchModel, FEATURE_COUNT};
-use glam::Vec3;
+use glam::{Quat, Vec3};
 
 /// Rate of the critically damped spring that moves the depth, 1/s.
 const RATE: f32 = 9.0;
+
+/// Share of the difference from standing arms that the arms of the deepest crouch do without: arms that swing close to an upright trunk would swing through a low one.
+const ARMS_HELD: f32 = 0.35;
 
 /// Depth that counts as upright.
 const LEAST: f32 = 1e-4;
@@ -23,6 +29,8 @@ pub(crate) struct CrouchMoment {
 #[derive(Clone, Debug)]
 pub(super) struct Crouch {
     beside: Option<Beside>,
+    /// Rotations of standing people's joints; those of the arms count.
+    standing: [Quat; JOINT_COUNT],
     /// Maximum speed in the deepest crouch, m/s on this body.
     fastest_mps: f32,
     pub(super) moment: CrouchMoment,
@@ -47,11 +55,14 @@ impl CrouchMoment {
 }
 
 impl Crouch {
-    /// Creates the crouch of a body with legs of this length; without a model it stays upright.
-    pub(super) fn new(model: Option<&CrouchModel>, leg_length: f32) -> Self {
+    /// Creates the crouch of a body with legs of this length, from a standing posture; without a model it stays upright.
+    pub(super) fn new(model: Option<&CrouchModel>, standing: &Posture, leg_length: f32) -> Self {
+        let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+        decode(standing, &mut rotations);
         let row = |model: &CrouchModel| core::array::from_fn(|index| model.beside[index] as f32);
         Self {
             beside: model.map(row),
+            standing: rotations,
             fastest_mps: model.map_or(f32::INFINITY, |model| model.fastest as f32 * leg_length),
             moment: CrouchMoment::default(),
         }
@@ -79,6 +90,11 @@ impl Crouch {
             return;
         }
         let feet = body.feet(pose);
+        for joint in Joint::ALL.into_iter().filter(|joint| joint.is_of_arm()) {
+            let index = joint.index();
+            let own = &mut pose.rotations[index];
+            *own = own.slerp(self.standing[index], ARMS_HELD * amount);
+        }
         let beside = beside.map(|value| amount * value);
         Body::turn(&beside, pose);
         let [up, ahead] = [beside[FEATURE_COUNT], beside[FEATURE_COUNT + 1]];
@@ -99,7 +115,7 @@ fn share(amount: f32) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use footfall_core::{Joint, ModelPose, Pose, Side, Skeleton, forward_kinematics};
+    use footfall_core::{ModelPose, Pose, Side, Skeleton, forward_kinematics};
     use footfall_model::BESIDE_COUNT;
 
     fn model() -> CrouchModel {
@@ -116,7 +132,7 @@ mod tests {
     fn hips_go_down_and_feet_stay() {
         let skeleton = Skeleton::standard();
         let body = Body::new(&skeleton);
-        let mut crouch = Crouch::new(Some(&model()), body.leg_length);
+        let mut crouch = Crouch::new(Some(&model()), &[0.0; FEATURE_COUNT], body.leg_length);
         for _ in 0..120 {
             crouch.step(1.0 / 60.0, 1.0);
         }
@@ -164,11 +180,11 @@ mod tests {
 
     #[test]
     fn who_crouches_goes_slower_and_amounts_stay_within_bounds() {
-        let crouch = Crouch::new(Some(&model()), 0.8);
+        let crouch = Crouch::new(Some(&model()), &[0.0; FEATURE_COUNT], 0.8);
         assert!((crouch.fastest_mps(0.0, 6.0) - 6.0).abs() < 1e-6);
         assert!((crouch.fastest_mps(7.0, 6.0) - 1.2).abs() < 1e-6);
         assert!((crouch.fastest_mps(f32::NAN, 6.0) - 6.0).abs() < 1e-6);
-        let upright = Crouch::new(None, 0.8);
+        let upright = Crouch::new(None, &[0.0; FEATURE_COUNT], 0.8);
         assert!((upright.fastest_mps(1.0, 6.0) - 6.0).abs() < 1e-6);
     }
 }

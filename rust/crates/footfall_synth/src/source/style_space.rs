@@ -2,7 +2,7 @@
 
 use super::buffers::{BufferPool, StepBuffers};
 use crate::error::SynthError;
-use crate::gait::{Gait, standing_features};
+use crate::gait::{Gait, Posture, mean_posture, standing_features};
 use crate::moves::MoveTables;
 use crate::plan::Statistics;
 use crate::standing::StandingTables;
@@ -45,7 +45,9 @@ pub(crate) struct Blend {
     pub(crate) weights: Vec<f32>,
     pub(crate) model: Arc<GaitModel>,
     pub(crate) statistics: Statistics<f32>,
-    pub(crate) standing: [f32; FEATURE_COUNT],
+    pub(crate) standing: Posture,
+    /// Mean posture of its steps.
+    pub(crate) walking: Posture,
     pub(crate) fine: Option<Arc<FineTables>>,
     /// Factors on the features of the fine motion.
     pub(crate) fine_scale: Scale,
@@ -170,6 +172,7 @@ impl StyleSpace {
             gait: Gait::Walk,
             running,
             standing,
+            walking: mean_posture(&model),
             fine: self.fine.clone(),
             fine_scale: model
                 .fine
@@ -207,13 +210,14 @@ impl RunningParts {
     }
 
     /// Returns the run of a mixture of styles by these weights, for a person with this standing posture.
-    fn mix(&self, model: &GaitModel, standing: &[f32; FEATURE_COUNT], weights: &[f32]) -> Blend {
+    fn mix(&self, model: &GaitModel, standing: &Posture, weights: &[f32]) -> Blend {
         let mut statistics = Statistics::new(model);
         statistics.set_pull(&self.pull);
         Blend {
             weights: weights.to_vec(),
             statistics,
             standing: *standing,
+            walking: mean_posture(model),
             fine: self.fine.clone(),
             fine_scale: model
                 .fine

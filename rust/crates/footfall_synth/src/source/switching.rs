@@ -273,6 +273,7 @@ impl SwitchingSteps {
             &Placing {
                 shape: &self.shape,
                 standing: [&self.standing; 2],
+                walking: [&self.standing; 2],
                 turn_rate: self.origin.turn_rate,
                 facing: self.origin.facing,
                 velocity_mps: self.velocity_mps,

@@ -3,6 +3,7 @@
 #![expect(clippy::unwrap_used, reason = "tests may fail")]
 #![expect(clippy::disallowed_methods, reason = "the shipped walk is a file")]
 
+mod arms;
 mod climbing;
 mod jumping;
 mod leaning;

@@ -29,7 +29,7 @@ impl Moves {
     /// Adds to a model what the recordings show.
     pub(super) fn learn(&self, args: &TrainArgs, model: &mut GaitModel) -> Result<()> {
         if let Some(corpus) = &self.jumping {
-            let learned = jumping::learn(&clips(corpus)).with_context(|| {
+            let learned = jumping::learn(&clips(corpus), model.standing.as_ref()).with_context(|| {
                 format!(
                     "{}: the recordings of --jumping show fewer than three two-footed jumps out of standing; widen it",
                     args.corpus.index.display()
@@ -38,7 +38,7 @@ impl Moves {
             model.jump = Some(learned.model);
         }
         if let Some(corpus) = &self.crouching {
-            let learned = crouching::learn(&clips(corpus)).with_context(|| {
+            let learned = crouching::learn(&clips(corpus), model.standing.as_ref()).with_context(|| {
                 format!(
                     "{}: the recordings of --crouching have no person who walks both upright and crouched for several seconds; widen it",
                     args.corpus.index.display()

@@ -166,6 +166,7 @@ pub(super) fn placing<'a>(
     Placing {
         shape: &plans[step].shape,
         standing: [&before.standing, &now.standing],
+        walking: [&before.walking, &now.walking],
         turn_rate: origin.request.turn_rate,
         facing: [origin.facing_before, origin.request.facing],
         velocity_mps: now.gait.seen_from_steps(velocity),
