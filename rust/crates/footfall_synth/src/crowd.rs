@@ -105,6 +105,14 @@ impl CrowdWalker {
         }
     }
 
+    /// Lets the walker stand, instead of beginning in the middle of a step. Call it before its first [`step`](Self::step).
+    pub fn stand(&mut self) {
+        let mut stroll = Stroll::standing(self.config.seed, self.phase());
+        stroll.be_at(&self.start_from_character, self.styled.0.shared());
+        self.stroll = Some(stroll);
+        self.own = None;
+    }
+
     /// Sets the amount of standing motion, as of [`GaitGenerator::set_standing_motion`](crate::GaitGenerator::set_standing_motion). Takes effect within a second. In shared steps the amount is 1
     /// or 0.
     pub fn set_standing_motion(&mut self, amount: f32) {

@@ -105,11 +105,18 @@ impl Agent {
         Self::new(u64::MAX, Vec3::ZERO, 0.0, 0)
     }
 
-    /// Begins to walk, at this time of the crowd.
-    pub(super) fn begin(&mut self, walker: CrowdWalker, now_secs: f64) {
+    /// Begins to walk, or to stand if its preferred speed is 0, at this time of the crowd.
+    pub(super) fn begin(&mut self, mut walker: CrowdWalker, now_secs: f64) {
         if let Some(led) = &mut self.led {
             led.wait(walker);
             return;
+        }
+        let asked = Controls {
+            speed_mps: self.speed_mps,
+            ..Controls::STAND
+        };
+        if asked.is_standing() {
+            walker.stand();
         }
         self.walked = walker.start_from_character();
         self.clock_secs = now_secs;

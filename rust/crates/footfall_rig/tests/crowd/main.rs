@@ -86,6 +86,37 @@ fn equal_seeds_give_equal_crowds_that_wander_and_others_do_not() {
     assert!(moved.count() > 20);
 }
 
+/// They took the step in the middle of which others begin, and went 0.7 m.
+#[test]
+fn who_has_no_speed_stands_from_the_beginning_and_walks_when_asked() {
+    let mut crowd = crowd(Routing::Scripted);
+    crowd.add((0..12_u8).map(|index| (Vec3::X * f32::from(index) * 3.0, 0.5)));
+    crowd.come_in(usize::MAX);
+    let begin = places(&crowd);
+    let farthest = |crowd: &Crowd| {
+        let ways = places(crowd)
+            .into_iter()
+            .zip(&begin)
+            .map(|(now, then)| now.distance(*then));
+        ways.fold(0.0, f32::max)
+    };
+    for agent in crowd.agents_mut() {
+        agent.speed_mps = 0.0;
+    }
+    walk(&mut crowd, 2.0, |crowd| {
+        assert!(farthest(crowd) < 0.01, "{} m", farthest(crowd));
+    });
+    for agent in crowd.agents_mut() {
+        agent.speed_mps = 1.3;
+    }
+    walk(&mut crowd, 3.0, |_| {});
+    let ways = places(&crowd).into_iter().zip(&begin);
+    let least = ways
+        .map(|(now, then)| now.distance(*then))
+        .fold(f32::INFINITY, f32::min);
+    assert!(least > 2.5, "{least} m");
+}
+
 #[test]
 fn names_and_places_outlast_saving_and_others_who_leave() {
     let mut first = crowd(Routing::Scripted);

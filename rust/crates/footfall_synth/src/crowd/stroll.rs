@@ -75,6 +75,16 @@ impl Stroll {
         stroll
     }
 
+    /// Begins standing, with this foot as the last that landed.
+    pub(super) fn standing(seed: u64, phase: f32) -> Self {
+        Self {
+            speed: STAND as u8,
+            from: STAND as u8,
+            share: 1.0,
+            ..Self::new(seed, 0.0, phase)
+        }
+    }
+
     /// Begins at the end of an own step: its place, the foot that began it, and its speed; `None` for a walker that has stopped.
     pub(super) fn after(
         seed: u64,
@@ -82,10 +92,10 @@ impl Stroll {
         (side, speed_mps): (Side, Option<f32>),
         steps: &SharedSteps,
     ) -> Self {
-        let mut stroll = Self::new(seed, speed_mps.unwrap_or(0.0), 0.0);
-        if speed_mps.is_none() {
-            (stroll.speed, stroll.from) = (STAND as u8, STAND as u8);
-        }
+        let mut stroll = speed_mps.map_or_else(
+            || Self::standing(seed, 0.0),
+            |speed_mps| Self::new(seed, speed_mps, 0.0),
+        );
         stroll.side = side;
         stroll.share = 1.0;
         if let Some(speed_mps) = speed_mps {

@@ -37,7 +37,7 @@ impl Planter {
             turn_rate,
             ..self.state
         });
-        if [begins, ends] == [0.0; 2] {
+        if begins.max(ends) <= 0.0 {
             return;
         }
         for (index, frame) in generated.iter_mut().enumerate() {

@@ -3,7 +3,7 @@
 use crate::strafing::going;
 use crate::world::{Frame, Kind, generator, run, walking};
 use core::f32::consts::PI;
-use footfall_core::{Joint, Side, Skeleton};
+use footfall_core::{Joint, Skeleton};
 use footfall_synth::Controls;
 use glam::Vec3;
 
@@ -18,11 +18,11 @@ fn points(from: Vec3, to: Vec3) -> impl Iterator<Item = Vec3> + Clone {
 fn clearances(frames: &[Frame]) -> [f32; 2] {
     let mut least = [f32::INFINITY; 2];
     for frame in frames {
-        let line = |from: Joint, to: Joint| {
-            points(frame.model.position(from), frame.model.position(to))
-        };
+        let line =
+            |from: Joint, to: Joint| points(frame.model.position(from), frame.model.position(to));
         let trunk = line(Joint::Hips, Joint::Neck);
-        let [left, right] = Side::BOTH.map(|side| line(side.lower_arm(), side.hand()));
+        let left = line(Joint::LeftLowerArm, Joint::LeftHand);
+        let right = line(Joint::RightLowerArm, Joint::RightHand);
         for arm in [&left, &right] {
             for point in arm.clone() {
                 let nearest = trunk.clone().map(|of_trunk| of_trunk.distance(point));
@@ -47,11 +47,11 @@ fn arms_keep_clear_of_the_body() {
         ..controls
     };
     for (what, controls, trunk_m, other_m) in [
-        ("walking", walking(1.3), 0.12, 0.3),
+        ("walking", walking(1.3), 0.11, 0.3),
         ("backwards", going(PI, 1.0), 0.08, 0.25),
-        ("crouched", crouched(Controls::STAND), 0.1, 0.04),
-        ("walking crouched", crouched(walking(0.9)), 0.07, 0.1),
-        ("backwards crouched", crouched(going(PI, 0.8)), 0.07, 0.1),
+        ("crouched", crouched(Controls::STAND), 0.09, 0.06),
+        ("walking crouched", crouched(walking(0.9)), 0.065, 0.1),
+        ("backwards crouched", crouched(going(PI, 0.8)), 0.08, 0.1),
     ] {
         for seed in 1..=4 {
             let mut walker = generator(Kind::Styled, seed);

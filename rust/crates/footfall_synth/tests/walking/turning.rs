@@ -3,7 +3,7 @@
 use crate::world::{Frame, Kind, generator, run, sole, walking};
 use footfall_core::{Joint, Side, Skeleton};
 use footfall_synth::Controls;
-use glam::{Vec2, Vec3Swizzles as _};
+use glam::{Vec2, Vec3Swizzles};
 
 /// Height of an ankle above the other from which one foot passes over the other one, metres.
 const PASSES_OVER_M: f32 = 0.12;
@@ -36,7 +36,7 @@ fn gaps(speed_mps: f32, turn_dps: f32) -> Vec<f32> {
 fn gap(skeleton: &Skeleton, frame: &Frame) -> f32 {
     const POINTS: u8 = 20;
     let [left, right] = Side::BOTH.map(|side| {
-        let [heel, _, toe_tip] = sole(skeleton, frame, side).map(|point| point.xz());
+        let [heel, _, toe_tip] = sole(skeleton, frame, side).map(Vec3Swizzles::xz);
         (0..=POINTS).map(move |point| heel.lerp(toe_tip, f32::from(point) / f32::from(POINTS)))
     });
     let pairs = left.flat_map(|a: Vec2| right.clone().map(move |b| a.distance(b)));
