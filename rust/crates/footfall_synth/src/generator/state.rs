@@ -21,7 +21,7 @@ use crate::moves::Moves;
 use crate::source::Steps;
 use crate::standing::Moment;
 use climbing::Climbing;
-use feet::Feet;
+use feet::{Feet, Stance};
 use footfall_core::{GroundTransform, StepPosition};
 use glam::Vec3;
 use led::Led;
@@ -32,11 +32,11 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 
 /// Version of the layout that this build writes, and the oldest that it reads.
-const VERSION: u8 = 13;
+const VERSION: u8 = 14;
 const OLDEST: u8 = 4;
 
 /// Versions from which states have standing motion, running, steps that change in their middle and jumps, balance, climbs, corrections of the way, pending jumps from
-/// the start of the walk rather than from the character, legs that lean against changes of speed, and pushes that build up.
+/// the start of the walk rather than from the character, legs that lean against changes of speed, pushes that build up, and feet that are spread in turns.
 const STANDING: u8 = 5;
 const RUNNING: u8 = 6;
 const MOVING: u8 = 7;
@@ -46,6 +46,7 @@ const LED: u8 = 10;
 const JUMPS_FROM_START: u8 = 11;
 const LEGS_LEAN: u8 = 12;
 const PUSHES_BUILD_UP: u8 = 13;
+const FEET_SPREAD: u8 = 14;
 
 /// Limit of all numbers of a state: metres, radians, frames and factors.
 const MAX_VALUE: f64 = 1e7;
@@ -236,6 +237,7 @@ impl GaitGenerator {
             Led::of(self),
             planter.map_or(0.0, |feet| feet.lean.leg),
             self.moves.as_ref().and_then(Moves::coming),
+            Feet::spread_midway(self),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -262,6 +264,7 @@ impl GaitGenerator {
         let led: Led = parts.next(LED, Led::default())?;
         let leg: f32 = parts.next(LEGS_LEAN, 0.0)?;
         let coming: Option<[f32; 2]> = parts.next(PUSHES_BUILD_UP, None)?;
+        let spread: Option<f32> = parts.next(FEET_SPREAD, None)?;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -273,6 +276,7 @@ impl GaitGenerator {
             balance
                 .into_iter()
                 .chain([leg])
+                .chain(spread)
                 .chain(coming.into_iter().flatten())
                 .map(f64::from)
                 .all(is_reasonable),
@@ -285,14 +289,18 @@ impl GaitGenerator {
             phase: state.phase,
             variation: state.variation,
         };
+        let stance = Stance {
+            lean: quick.lean(leg),
+            balance: balance.into(),
+            spread,
+        };
         match &mut self.steps {
             Steps::Styled(steps) => {
-                let posture = (quick.lean(leg), balance.into());
-                let more = (&running, &quick, moving.leap_m, posture, &led);
+                let more = (&running, &quick, moving.leap_m, &stance, &led);
                 state.take_up(steps, more, &self.skeleton, &config)?;
             }
             Steps::Switching(steps) => {
-                state.resume(steps, (quick.lean(leg), balance.into()), &config)?;
+                state.resume(steps, &stance, &config)?;
             }
         }
         self.config = config;

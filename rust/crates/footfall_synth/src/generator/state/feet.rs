@@ -1,6 +1,8 @@
 //! Feet and hips in a saved state.
 
+use crate::generator::GaitGenerator;
 use crate::ground::{Lean, PlanterState, Strafe, spread};
+use crate::source::Steps;
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -18,6 +20,14 @@ pub(super) struct Feet {
     ground_velocity: Option<[f32; 3]>,
     stride: f32,
     strafe: Strafe,
+}
+
+/// Stance over the feet at the beginning of a step, which follows in later parts of a state.
+pub(super) struct Stance {
+    pub(super) lean: Lean,
+    pub(super) balance: Vec2,
+    /// Spread of the feet in the middle of a step; `None` for one that is as at the end of a step.
+    pub(super) spread: Option<f32>,
 }
 
 impl Feet {
@@ -38,8 +48,9 @@ impl Feet {
         }
     }
 
-    pub(super) fn planter(&self) -> PlanterState {
-        let mut planter = PlanterState {
+    /// Returns the state of feet with this stance over them.
+    pub(super) fn planter(&self, stance: &Stance) -> PlanterState {
+        let feet = PlanterState {
             plants: self.plants.map(|[x, y, z, heading]| Plant {
                 flat_ankle: Vec3::new(x, y, z),
                 heading,
@@ -51,14 +62,26 @@ impl Feet {
             ground_position: self.ground_position.into(),
             ground_velocity: self.ground_velocity.map(Vec3::from),
             stride: self.stride,
-            spread: 0.0,
             strafe: self.strafe,
-            balance: Vec2::ZERO,
+            spread: 0.0,
+            balance: stance.balance,
+            lean: stance.lean,
             airborne: None,
-            lean: Lean::default(),
         };
-        planter.spread = spread(&planter);
-        planter
+        PlanterState {
+            spread: stance.spread.unwrap_or_else(|| spread(&feet)),
+            ..feet
+        }
+    }
+
+    /// Returns the spread of the feet of a walker whose step was replanned.
+    pub(super) fn spread_midway(generator: &GaitGenerator) -> Option<f32> {
+        let Steps::Styled(steps) = &generator.steps else {
+            return None;
+        };
+        let origin = steps.window.origin();
+        let feet = origin.planter.filter(|_| origin.remainder.is_some());
+        feet.map(|feet| feet.spread)
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {

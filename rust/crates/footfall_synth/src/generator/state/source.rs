@@ -1,16 +1,15 @@
 //! Parts of a state that depend on the source of steps, and their restoration.
 
-use super::{Led, Quick, Running, Source, State, StateError, detail_of};
+use super::{Led, Quick, Running, Source, Stance, State, StateError, detail_of};
 use crate::config::GeneratorConfig;
 use crate::gait::{Manner, Pace, StepRequest};
-use crate::ground::{Lean, PlanterState};
+use crate::ground::PlanterState;
 use crate::plan::{MAX_COMPONENTS, StepDraw, TIE_LEN, WINDOW};
 use crate::source::{
     MeasuredBlend, Origin, StepWindow, StyledSteps, SwitchingOrigin, SwitchingSteps, planner_of,
 };
 use footfall_core::{Side, Skeleton, StepPosition};
 use footfall_model::GaitModel;
-use glam::Vec2;
 use std::sync::Arc;
 
 impl Source {
@@ -58,13 +57,7 @@ impl State {
     pub(super) fn take_up(
         &self,
         steps: &mut StyledSteps,
-        (running, quick, leap_m, (lean, balance), led): (
-            &Running,
-            &Quick,
-            Option<f32>,
-            (Lean, Vec2),
-            &Led,
-        ),
+        (running, quick, leap_m, stance, led): (&Running, &Quick, Option<f32>, &Stance, &Led),
         skeleton: &Skeleton,
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
@@ -128,9 +121,7 @@ impl State {
             velocity_before_mps: quick.velocities_mps[0].into(),
             planter: self.feet.as_ref().map(|feet| PlanterState {
                 airborne: running.airborne(),
-                balance,
-                lean,
-                ..feet.planter()
+                ..feet.planter(stance)
             }),
             tie: [0.0; TIE_LEN],
             remainder: quick.remainder(),
@@ -196,7 +187,7 @@ impl State {
     pub(super) fn resume(
         &self,
         steps: &mut SwitchingSteps,
-        (lean, balance): (Lean, Vec2),
+        stance: &Stance,
         config: &GeneratorConfig,
     ) -> Result<(), StateError> {
         let Source::Switching {
@@ -224,11 +215,7 @@ impl State {
             facing: self.facing,
             chance_position: self.chance_position,
             expected: expected.clone(),
-            planter: self.feet.as_ref().map(|feet| PlanterState {
-                balance,
-                lean,
-                ..feet.planter()
-            }),
+            planter: self.feet.as_ref().map(|feet| feet.planter(stance)),
         };
         steps.resume(config, origin, self.velocity_mps.into());
         Ok(())
