@@ -64,13 +64,13 @@ func test_speeds_sizes_and_turns_are_what_a_script_asks() -> void:
 
 
 func test_walkers_go_where_they_are_sent_and_keep_apart() -> void:
-	# They steer with their next step and hardly stop: in two of 28 crowds somebody is brushed, in the others nobody comes near.
+	# They steer with their next step and hardly stop: in 12 of 168 crowds somebody is brushed. A sample of 28 depends on chance.
 	var apart: Array[float] = []
-	for seed_of_crowd: int in 28:
+	for seed_of_crowd: int in 168:
 		apart.append(_two_rows(seed_of_crowd))
 	apart.sort()
-	check(apart[3] > 0.4, "nobody walks through anybody: %s m" % [apart])
-	check(apart[6] > 0.5, "most keep apart: %s m" % [apart])
+	check(apart[18] > 0.4, "nobody walks through anybody: %s m" % [apart.slice(0, 40)])
+	check(apart[36] > 0.5, "most keep apart: %s m" % [apart.slice(0, 40)])
 
 
 ## Two rows that have to pass through each other; returns how near two of them come.

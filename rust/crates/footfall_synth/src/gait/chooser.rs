@@ -23,7 +23,7 @@ const PIVOT_SECS: f64 = 0.45;
 /// Turn of a step on the spot, radians, and its least duration, seconds: quicker turns take quicker steps. From this speed on, in m/s, steps are not on the spot.
 const SPOT_RAD: f64 = 0.7;
 const SPOT_LEAST_SECS: f64 = 0.35;
-const SPOT_MPS: f32 = 0.6;
+const SPOT_MPS: f32 = 0.45;
 
 /// Differences between the velocity of a step and the requested one from which steps get quicker, and at which they last this long at most, m/s and seconds. Who turns back the way they
 /// came passes through a step that hardly travels, and does not dwell on it.
@@ -231,10 +231,11 @@ impl StepChooser {
         let turn_rate = controls.turn_rate.abs();
         let spot_secs = (SPOT_RAD / f64::from(turn_rate)).max(SPOT_LEAST_SECS);
         let fastest_mps = velocity_mps.length().max(controls.velocity_mps.length());
-        let travels = smooth_step(fastest_mps / SPOT_MPS);
+        let spot = f64::from(1.0 - smooth_step(fastest_mps / SPOT_MPS));
+        let quicker = self.walk.within(pace, spot_secs).tempo / pace.tempo;
+        pace = pace.quicker(1.0 + spot * (quicker - 1.0));
         for (share, most_secs) in [
             (between(PIVOT_RADPS, turn_rate), PIVOT_SECS),
-            (1.0 - travels, spot_secs),
             (between(REVERSAL_MPS, missing_mps), REVERSAL_SECS),
         ] {
             let quicker = self.walk.within(pace, most_secs);
