@@ -23,7 +23,7 @@ const PIVOT_SECS: f64 = 0.45;
 /// Turn of a step on the spot, radians, and its least duration, seconds: quicker turns take quicker steps. From this speed on, in m/s, steps are not on the spot.
 const SPOT_RAD: f64 = 0.7;
 const SPOT_LEAST_SECS: f64 = 0.35;
-const SPOT_MPS: f32 = 0.5;
+const SPOT_MPS: f32 = 0.55;
 
 /// Differences between the velocity of a step and the requested one from which steps get quicker, and at which they last this long at most, m/s and seconds. Who turns back the way they
 /// came passes through a step that hardly travels, and does not dwell on it.
