@@ -98,8 +98,7 @@ func _lane(destinations: bool, in_field := 0, renewed := false) -> float:
 	var left := 0.0
 	for index: int in 8:
 		left = maxf(left, crowd.get_positions()[index].distance_to(targets[index]))
-	# Those who share a goal stop up to 2.3 m away from it, before whoever stands there.
-	check_below(left, 2.3, "everybody gets through")
+	check_below(left, 2.0, "everybody gets through")
 	crowd.free()
 	region.free()
 	return astray

@@ -13,6 +13,9 @@ pub(crate) const FASTEST_RUN_MPS: f32 = 6.0;
 /// Fastest turn rate of a walk.
 const MAX_TURN_RATE_RADPS: f32 = 3.5;
 
+/// Units of a turn rate that is sent to peers over a network, in a rad/s.
+pub(crate) const TURN_UNITS: f32 = 36.0;
+
 /// Requested gait.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum GaitChoice {
@@ -84,4 +87,9 @@ impl Controls {
 
 fn finite_or(value: f32, otherwise: f32) -> f32 {
     if value.is_finite() { value } else { otherwise }
+}
+
+/// Returns a turn rate as peers over a network know it, rad/s.
+pub(crate) fn sent_turn_rate(turn_rate: f32) -> f32 {
+    (TURN_UNITS * turn_rate).round() / TURN_UNITS
 }

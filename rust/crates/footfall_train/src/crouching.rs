@@ -66,17 +66,14 @@ pub fn learn(
     let depth = quantile(&mut sums.depths);
     let mut beside: Vec<f64> = sums.by_depth.iter().map(|sum| sum / sums.depth).collect();
     beside[FEATURE_COUNT + 1] = depth * sums.by_depth[FEATURE_COUNT + 1] / sums.squared;
-    for joint in Joint::ALL {
-        if joint >= Joint::LeftUpperLeg {
-            beside[feature_offset(joint)..][..3].fill(0.0);
-        }
-    }
     beside[FEATURE_COUNT] = -depth;
     let even = symmetric(&beside);
     for joint in Joint::ALL {
-        if !joint.is_of_arm() {
-            let at = feature_offset(joint);
-            beside[at..at + 3].copy_from_slice(&even[at..at + 3]);
+        let at = feature_offset(joint)..feature_offset(joint) + 3;
+        if joint.is_of_leg() {
+            beside[at].fill(0.0);
+        } else if !joint.is_of_arm() {
+            beside[at.clone()].copy_from_slice(&even[at]);
         }
     }
     Some(LearnedCrouching {

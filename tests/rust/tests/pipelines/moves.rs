@@ -8,6 +8,7 @@ use footfall_model::layout::feature_offset;
 use footfall_model::{FEATURE_COUNT, GaitModel};
 use footfall_synth::{Controls, Move, StandConfig, synthesize_moves};
 use footfall_tests::data::repository;
+use footfall_train::crouching::LearnedCrouching;
 use footfall_train::{crouching, jumping};
 use glam::{DVec3, Quat};
 use std::sync::Arc;
@@ -72,20 +73,26 @@ fn who_only_walks_teaches_nothing() {
     assert!(crouching::learn(&[(&clip, 0)], None).is_none());
 }
 
-#[test]
-fn a_crouch_of_known_depth_is_learned() {
+/// A walk that is crouched for seven seconds.
+fn crouched() -> Clip {
     let moves = [
         row(0.0, 0.0, 0.0, 0.0),
         row(2.0, 0.8, 1.0, 0.0),
         row(9.0, 0.0, 0.0, 0.0),
     ];
-    let clip = clip(&moves, 12.0);
+    clip(&moves, 12.0)
+}
+
+/// The crouch of a clip, for a model.
+fn learned(model: &GaitModel, clip: &Clip) -> LearnedCrouching {
+    crouching::learn(&[(clip, 0)], model.standing.as_ref()).expect("seven seconds")
+}
+
+#[test]
+fn a_crouch_of_known_depth_is_learned() {
+    let clip = crouched();
     let model = model();
-    let learn = |clip: &Clip| {
-        let standing = model.standing.as_ref();
-        crouching::learn(&[(clip, 0)], standing).expect("seven seconds")
-    };
-    let learned = learn(&clip);
+    let learned = learned(&model, &clip);
     let known = &model.crouch.as_ref().expect("a crouch").beside;
     let found = &learned.model.beside;
     // Steps bend the knees on top of it.
@@ -104,12 +111,7 @@ fn a_crouch_of_known_depth_is_learned() {
 /// Whoever carries the arms in another way, standing and crouched alike, teaches the same trunk and other arms.
 #[test]
 fn crouched_arms_are_those_of_the_recording_whatever_the_model_stands_like() {
-    let moves = [
-        row(0.0, 0.0, 0.0, 0.0),
-        row(2.0, 0.8, 1.0, 0.0),
-        row(9.0, 0.0, 0.0, 0.0),
-    ];
-    let clip = clip(&moves, 12.0);
+    let clip = crouched();
     let mut abducted = clip.clone();
     let arm = Joint::LeftUpperArm;
     let turn = Quat::from_rotation_z(0.4);
@@ -118,11 +120,7 @@ fn crouched_arms_are_those_of_the_recording_whatever_the_model_stands_like() {
         *rotation *= turn;
     }
     let model = model();
-    let [plain, turned] = [&clip, &abducted].map(|clip| {
-        let standing = model.standing.as_ref();
-        let learned = crouching::learn(&[(clip, 0)], standing).expect("seven seconds");
-        learned.model.beside
-    });
+    let [plain, turned] = [&clip, &abducted].map(|clip| learned(&model, clip).model.beside);
     let rotation = |beside: &[f64], joint: Joint| {
         let at = feature_offset(joint);
         exp_map(DVec3::from_slice(&beside[at..at + 3]).as_vec3())

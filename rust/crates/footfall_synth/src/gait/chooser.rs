@@ -5,7 +5,7 @@ use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::{Pace, PaceTable};
 use super::request::{Manner, Passed, StepControls, StepRequest};
 use super::stand::Amplitude;
-use crate::controls::{FASTEST_RUN_MPS, GaitChoice, STANDING_SPEED_MPS};
+use crate::controls::{FASTEST_RUN_MPS, GaitChoice, STANDING_SPEED_MPS, sent_turn_rate};
 use crate::detail::Detail;
 use footfall_core::StepPosition;
 use footfall_core::ease::smooth_step;
@@ -16,14 +16,14 @@ const FIRST_SECS: f64 = 0.45;
 const LAST_SECS: f64 = 0.39;
 
 /// Turn rates from which steps get quicker, and at which a walker plants a foot and turns about it, rad/s; and the maximum duration of such a step, seconds. In between the tempo changes
-/// evenly: peers over a network know turn rates in steps.
+/// evenly.
 const PIVOT_RADPS: [f32; 2] = [1.5, 2.5];
 const PIVOT_SECS: f64 = 0.45;
 
-/// Turn of a step on the spot, radians, and its least duration, seconds: quicker turns take quicker steps. From this speed on, in m/s, steps are not on the spot.
+/// Turn of a step on the spot, radians, and its least duration, seconds: quicker turns take quicker steps. From this requested speed on, in m/s, steps are not on the spot.
 const SPOT_RAD: f64 = 0.7;
 const SPOT_LEAST_SECS: f64 = 0.35;
-const SPOT_MPS: f32 = 0.55;
+const SPOT_MPS: f32 = 0.5;
 
 /// Differences between the velocity of a step and the requested one from which steps get quicker, and at which they last this long at most, m/s and seconds. Who turns back the way they
 /// came passes through a step that hardly travels, and does not dwell on it.
@@ -225,13 +225,13 @@ impl StepChooser {
         }
     }
 
-    /// Returns the pace of a walked step of this velocity: quicker where it turns, most of all on the spot, or where its velocity is far from the requested one.
+    /// Returns the pace of a walked step of this velocity: quicker where it turns, most of all on the spot, or where its velocity is far from the requested one. Peers over a network choose
+    /// the same: turn rates count as they are sent, and a step is on the spot by the requested speed.
     fn agile(&self, mut pace: Pace, controls: &StepControls, velocity_mps: Vec2) -> Pace {
         let missing_mps = controls.velocity_mps.distance(velocity_mps);
-        let turn_rate = controls.turn_rate.abs();
+        let turn_rate = sent_turn_rate(controls.turn_rate).abs();
         let spot_secs = (SPOT_RAD / f64::from(turn_rate)).max(SPOT_LEAST_SECS);
-        let fastest_mps = velocity_mps.length().max(controls.velocity_mps.length());
-        let spot = f64::from(1.0 - smooth_step(fastest_mps / SPOT_MPS));
+        let spot = f64::from(1.0 - smooth_step(controls.velocity_mps.length() / SPOT_MPS));
         let quicker = self.walk.within(pace, spot_secs).tempo / pace.tempo;
         pace = pace.quicker(1.0 + spot * (quicker - 1.0));
         for (share, most_secs) in [

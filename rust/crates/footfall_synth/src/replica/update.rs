@@ -17,7 +17,7 @@
 //! | 22–23 | the walker's heading there (12 bits), depth of the crouch (4 bits) | π/2048, 1/15 |
 
 use super::ReplicaError;
-use crate::controls::{Controls, GaitChoice};
+use crate::controls::{Controls, GaitChoice, TURN_UNITS};
 use core::f32::consts::{PI, TAU};
 use footfall_core::GroundTransform;
 use glam::Vec3;
@@ -38,7 +38,6 @@ const PLACE_UNITS: f32 = 1000.0;
 const HEIGHT_UNITS: f32 = 25.0;
 const SPEED_UNITS: f32 = 1000.0;
 const DIRECTION_UNITS: f32 = 128.0 / PI;
-const TURN_UNITS: f32 = 36.0;
 const RISE_UNITS: f32 = 100.0;
 const HEADING_STEPS: f32 = 4096.0;
 const CROUCH_UNITS: f32 = 15.0;
