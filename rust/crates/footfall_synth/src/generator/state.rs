@@ -11,6 +11,7 @@ mod moving;
 mod quick;
 mod running;
 mod source;
+mod version;
 
 use super::GaitGenerator;
 use crate::config::GeneratorConfig;
@@ -21,32 +22,15 @@ use crate::moves::Moves;
 use crate::source::Steps;
 use crate::standing::Moment;
 use climbing::Climbing;
-use feet::{Feet, Stance};
+use feet::{Feet, Midway, Stance};
 use footfall_core::{GroundTransform, StepPosition};
 use glam::Vec3;
 use led::Led;
 use moving::Moving;
 use quick::Quick;
 use running::Running;
-use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-
-/// Version of the layout that this build writes, and the oldest that it reads.
-const VERSION: u8 = 14;
-const OLDEST: u8 = 4;
-
-/// Versions from which states have standing motion, running, steps that change in their middle and jumps, balance, climbs, corrections of the way, pending jumps from
-/// the start of the walk rather than from the character, legs that lean against changes of speed, pushes that build up, and feet that are spread in turns.
-const STANDING: u8 = 5;
-const RUNNING: u8 = 6;
-const MOVING: u8 = 7;
-const BALANCE: u8 = 8;
-const CLIMBING: u8 = 9;
-const LED: u8 = 10;
-const JUMPS_FROM_START: u8 = 11;
-const LEGS_LEAN: u8 = 12;
-const PUSHES_BUILD_UP: u8 = 13;
-const FEET_SPREAD: u8 = 14;
+use version::{OLDEST, Parts, VERSION, since};
 
 /// Limit of all numbers of a state: metres, radians, frames and factors.
 const MAX_VALUE: f64 = 1e7;
@@ -131,24 +115,6 @@ enum Source {
         detail: u8,
         expected: Vec<f32>,
     },
-}
-
-/// Parts that follow a [`State`], of which earlier versions have the first ones.
-struct Parts<'a> {
-    version: u8,
-    rest: &'a [u8],
-}
-
-impl Parts<'_> {
-    /// Reads the next part, which states have `since` this version; that of `earlier` ones is given.
-    fn next<T: DeserializeOwned>(&mut self, since: u8, earlier: T) -> postcard::Result<T> {
-        if self.version < since {
-            return Ok(earlier);
-        }
-        let (part, rest) = postcard::take_from_bytes(self.rest)?;
-        self.rest = rest;
-        Ok(part)
-    }
 }
 
 /// Progress of a walker's life, behind a [`State`].
@@ -237,7 +203,7 @@ impl GaitGenerator {
             Led::of(self),
             planter.map_or(0.0, |feet| feet.lean.leg),
             self.moves.as_ref().and_then(Moves::coming),
-            Feet::spread_midway(self),
+            planter.as_ref().and_then(Midway::of),
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -251,20 +217,17 @@ impl GaitGenerator {
         if !(OLDEST..=VERSION).contains(&state.version) {
             return Err(StateError::Version(state.version));
         }
-        let mut parts = Parts {
-            version: state.version,
-            rest,
-        };
-        let alive: Alive = parts.next(STANDING, Alive::default())?;
-        let running: Running = parts.next(RUNNING, Running::default())?;
-        let quick = parts.next(MOVING, Quick::of_slow(&state))?;
-        let moving: Moving = parts.next(MOVING, Moving::default())?;
-        let balance: [f32; 2] = parts.next(BALANCE, [0.0; 2])?;
-        let climbing: Climbing = parts.next(CLIMBING, Climbing::default())?;
-        let led: Led = parts.next(LED, Led::default())?;
-        let leg: f32 = parts.next(LEGS_LEAN, 0.0)?;
-        let coming: Option<[f32; 2]> = parts.next(PUSHES_BUILD_UP, None)?;
-        let spread: Option<f32> = parts.next(FEET_SPREAD, None)?;
+        let mut parts = Parts::new(state.version, rest);
+        let alive: Alive = parts.next(since::STANDING, Alive::default())?;
+        let running: Running = parts.next(since::RUNNING, Running::default())?;
+        let quick = parts.next(since::MOVING, Quick::of_slow(&state))?;
+        let moving: Moving = parts.next(since::MOVING, Moving::default())?;
+        let balance: [f32; 2] = parts.next(since::BALANCE, [0.0; 2])?;
+        let climbing: Climbing = parts.next(since::CLIMBING, Climbing::default())?;
+        let led: Led = parts.next(since::LED, Led::default())?;
+        let leg: f32 = parts.next(since::LEGS_LEAN, 0.0)?;
+        let coming: Option<[f32; 2]> = parts.next(since::PUSHES_BUILD_UP, None)?;
+        let midway = Midway::read(&mut parts)?;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -276,7 +239,7 @@ impl GaitGenerator {
             balance
                 .into_iter()
                 .chain([leg])
-                .chain(spread)
+                .chain(midway.iter().flat_map(Midway::numbers))
                 .chain(coming.into_iter().flatten())
                 .map(f64::from)
                 .all(is_reasonable),
@@ -292,7 +255,7 @@ impl GaitGenerator {
         let stance = Stance {
             lean: quick.lean(leg),
             balance: balance.into(),
-            spread,
+            midway,
         };
         match &mut self.steps {
             Steps::Styled(steps) => {
@@ -326,7 +289,7 @@ impl GaitGenerator {
         moving.resume(
             self,
             coming.unwrap_or_default().into(),
-            state.version < JUMPS_FROM_START,
+            state.version < since::JUMPS_FROM_START,
         );
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::frame::PlantedFrame;
 use super::lean::{Bend, Pull};
+use super::look::Glance;
 use super::planter_state::{Airborne, PlanterState};
 use super::travel::TURN_ONSET;
 use crate::plan::StepTiming;
@@ -77,6 +78,7 @@ impl Cut<'_> {
             strafe: self.begun.strafe.between(&self.ended.strafe, strides, s),
             balance: self.begun.balance.lerp(self.ended.balance, share),
             lean: bend.at(s),
+            look: Glance::new(self.begun.look, &self.ended).at(self.frame as f32 * self.frame_secs),
             airborne: Some(Airborne {
                 now: self.foot(now, swinging),
                 before: self.foot(before, swinging),

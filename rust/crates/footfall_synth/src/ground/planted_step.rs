@@ -181,6 +181,7 @@ impl PlantedStep {
         planter.lean_over(&bend, timing.leading, generated);
         planter.plant_step(generated, &timing, course, frames);
         planter.sink(&bend, frames);
+        planter.look(frames);
         planter.solve_legs(generated, frames);
         self.arrival = Arrival {
             hips: frames[timing.frames].pose.root_position,

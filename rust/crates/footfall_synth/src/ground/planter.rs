@@ -1,6 +1,7 @@
 //! Planter: feet, legs and the state that is carried from step to step.
 
 use super::generated::GeneratedFrame;
+use super::look::Look;
 use super::planter_state::{Lean, PlanterState};
 use super::strafe::Strafe;
 use crate::plan::StepTiming;
@@ -50,6 +51,7 @@ impl Planter {
             balance: Vec2::ZERO,
             airborne: None,
             lean: Lean::default(),
+            look: Look::default(),
         };
         let mut planter = Self::resume(skeleton, frame_secs, &state);
         let standing = match timing.take_off {

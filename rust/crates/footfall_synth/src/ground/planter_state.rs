@@ -1,5 +1,6 @@
 //! State of feet, hips and heading between two steps.
 
+use super::look::Look;
 use super::strafe::Strafe;
 use footfall_core::Side;
 use footfall_ik::{FootTarget, Plant};
@@ -28,6 +29,8 @@ pub(crate) struct PlanterState {
     pub(crate) airborne: Option<Airborne>,
     /// Lean of the body.
     pub(crate) lean: Lean,
+    /// Turn of the head.
+    pub(crate) look: Look,
 }
 
 impl PlanterState {

@@ -69,6 +69,6 @@ pub(crate) fn spread(state: &PlanterState) -> f32 {
 }
 
 /// Returns the likeness of steps of this reach to steps on the spot.
-fn on_the_spot(stride: f32) -> f32 {
+pub(super) fn on_the_spot(stride: f32) -> f32 {
     1.0 - smooth_step(stride)
 }

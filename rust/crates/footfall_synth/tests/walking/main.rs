@@ -8,6 +8,7 @@ mod climbing;
 mod jumping;
 mod leaning;
 mod leaping;
+mod looking;
 mod pushed;
 mod quick;
 mod run_response;

@@ -1,8 +1,7 @@
 //! Feet and hips in a saved state.
 
-use crate::generator::GaitGenerator;
-use crate::ground::{Lean, PlanterState, Strafe, spread};
-use crate::source::Steps;
+use super::version::{Parts, since};
+use crate::ground::{Lean, Look, PlanterState, Strafe, look, spread};
 use footfall_ik::Plant;
 use glam::{Vec2, Vec3};
 use serde::{Deserialize, Serialize};
@@ -26,8 +25,7 @@ pub(super) struct Feet {
 pub(super) struct Stance {
     pub(super) lean: Lean,
     pub(super) balance: Vec2,
-    /// Spread of the feet in the middle of a step; `None` for one that is as at the end of a step.
-    pub(super) spread: Option<f32>,
+    pub(super) midway: Option<Midway>,
 }
 
 impl Feet {
@@ -64,24 +62,20 @@ impl Feet {
             stride: self.stride,
             strafe: self.strafe,
             spread: 0.0,
+            look: Look::default(),
             balance: stance.balance,
             lean: stance.lean,
             airborne: None,
         };
+        let midway = stance.midway.unwrap_or_else(|| Midway::at_end(&feet));
         PlanterState {
-            spread: stance.spread.unwrap_or_else(|| spread(&feet)),
+            spread: midway.spread,
+            look: Look {
+                angle: midway.look[0],
+                rate: midway.look[1],
+            },
             ..feet
         }
-    }
-
-    /// Returns the spread of the feet of a walker whose step was replanned.
-    pub(super) fn spread_midway(generator: &GaitGenerator) -> Option<f32> {
-        let Steps::Styled(steps) = &generator.steps else {
-            return None;
-        };
-        let origin = steps.window.origin();
-        let feet = origin.planter.filter(|_| origin.remainder.is_some());
-        feet.map(|feet| feet.spread)
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {
@@ -94,5 +88,47 @@ impl Feet {
             .chain([self.heading, self.turn_rate, self.stride])
             .chain(self.strafe.numbers())
             .chain(velocities.into_iter().flatten().flatten())
+    }
+}
+
+/// Spread of the feet, and turn of the head and its rate of change, at the beginning of a step, where they are not as at the end of one: a step was replanned, or a head still turns.
+#[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(super) struct Midway {
+    spread: f32,
+    look: [f32; 2],
+}
+
+impl Midway {
+    /// Returns that of these feet, if it does not follow from them.
+    pub(super) fn of(feet: &PlanterState) -> Option<Self> {
+        let midway = Self {
+            spread: feet.spread,
+            look: [feet.look.angle, feet.look.rate],
+        };
+        (midway != Self::at_end(feet)).then_some(midway)
+    }
+
+    /// Returns that of feet at the end of a step.
+    fn at_end(feet: &PlanterState) -> Self {
+        let look = look(feet);
+        Self {
+            spread: spread(feet),
+            look: [look.angle, look.rate],
+        }
+    }
+
+    /// Reads the next part of a state. In the first version that has it, heads did not turn.
+    pub(super) fn read(parts: &mut Parts<'_>) -> postcard::Result<Option<Self>> {
+        if parts.version != since::FEET_SPREAD {
+            return parts.next(since::HEADS_TURN, None);
+        }
+        let spread: Option<f32> = parts.next(since::FEET_SPREAD, None)?;
+        let look = [0.0; 2];
+        Ok(spread.map(|spread| Self { spread, look }))
+    }
+
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {
+        let [angle, rate] = self.look;
+        [self.spread, angle, rate].into_iter()
     }
 }
