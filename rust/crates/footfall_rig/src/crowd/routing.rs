@@ -2,10 +2,15 @@
 
 use super::agent::Agent;
 use super::goal::Goal;
+use footfall_core::rotation::wrap_angle;
 use glam::Vec2;
 
 /// Distance of a walker's goal ahead of it on the path, metres.
 const AHEAD_M: f32 = 2.5;
+
+/// Number of random places among which a wanderer chooses, and the way that is worth turning by a radian, metres.
+const CHOICES: usize = 6;
+const M_A_RAD: f32 = 10.0;
 
 /// Source of the walkers' goals.
 #[derive(Debug, Default)]
@@ -120,8 +125,7 @@ impl Routing {
             Self::Scripted | Self::Navigate => agent.follow_route(),
             Self::Wander { half } => {
                 if !agent.is_on_its_way() {
-                    let next = [agent.chance(), agent.chance()].map(|share| 2.0 * share - 1.0);
-                    agent.goal = Goal::Place(Vec2::from(next) * *half);
+                    agent.goal = Goal::Place(wander(agent, *half));
                 }
             }
             Self::Path(path) => {
@@ -134,6 +138,22 @@ impl Routing {
             }
         }
     }
+}
+
+/// Chooses a place of a rectangle with these half sides. People go on, and far, rather than back.
+fn wander(agent: &mut Agent, half: Vec2) -> Vec2 {
+    let mut chosen = (f32::INFINITY, Vec2::ZERO);
+    for _ in 0..CHOICES {
+        let shares = [agent.chance(), agent.chance()].map(|share| 2.0 * share - 1.0);
+        let place = Vec2::from(shares) * half;
+        let way = place - agent.level();
+        let off = wrap_angle(way.x.atan2(way.y) - agent.heading).abs();
+        let cost = off - way.length() / M_A_RAD;
+        if cost < chosen.0 {
+            chosen = (cost, place);
+        }
+    }
+    chosen.1
 }
 
 #[cfg(test)]
