@@ -25,12 +25,8 @@ const WALKING: Vec2 = Vec2::new(0.55, 0.55);
 /// Turn rate that does not turn the head, rad/s.
 const UNNOTICED_RADPS: f32 = 0.08;
 
-/// Joints that turn, from the trunk up, and their shares.
-const TURNING: [(Joint, f32); 3] = [
-    (Joint::UpperChest, 0.2),
-    (Joint::Neck, 0.4),
-    (Joint::Head, 0.4),
-];
+/// Share of the turn that the chest takes; neck and head take twice as much each.
+const CHEST_SHARE: f32 = 0.2;
 
 /// Turn of the head relative to the hips, radians, positive to the left, and its rate of change, rad/s.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -102,12 +98,19 @@ fn turn_head(frame: &mut PlantedFrame, angle: f32) {
     let rotations = &mut frame.pose.rotations;
     let trunk = [Joint::Hips, Joint::Spine, Joint::Chest];
     let [hips, spine, chest] = trunk.map(|joint| rotations[joint.index()]);
+    let once = Quat::from_rotation_y(CHEST_SHARE * angle);
+    let twice = once * once;
     let mut parent = hips * spine * chest;
-    for (joint, share) in TURNING {
+    for (joint, turn) in [
+        (Joint::UpperChest, once),
+        (Joint::Neck, twice),
+        (Joint::Head, twice),
+    ] {
+        // Turns about the vertical add up: each joint turns as if those below did not.
         let rotation = &mut rotations[joint.index()];
-        let turned = Quat::from_rotation_y(share * angle) * parent * *rotation;
-        *rotation = (parent.conjugate() * turned).normalize();
-        parent = turned;
+        let before = parent * *rotation;
+        *rotation = (parent.conjugate() * turn * before).normalize();
+        parent = before;
     }
 }
 
