@@ -20,7 +20,7 @@ use crate::moves::Moves;
 use crate::plan::StepShape;
 use crate::source::{Steps, StyleSpace, StyledSteps, SwitchingSteps};
 use crate::standing::Life;
-use footfall_core::{GroundTransform, Pose, Skeleton};
+use footfall_core::{GroundTransform, Pose, Side, Skeleton};
 use footfall_model::DynamicsModel;
 use std::sync::Arc;
 
@@ -148,16 +148,17 @@ impl GaitGenerator {
     /// A `dt_secs` of 0 gives the same pose again.
     pub fn step(&mut self, dt_secs: f32, controls: &Controls, out: &mut Pose) {
         let controls = &self.begin_frame(controls);
+        let mut rested = self.has_ended();
         if dt_secs > 0.0 {
             self.position += dt_secs.min(MAX_DT_SECS) * self.frame_rate_hz;
         }
-        while self.position >= self.shape().timing.frames as f32 {
-            let frames = self.shape().timing.frames as f32;
-            if self.shape().amplitude.to < 1.0 && controls.is_standing() {
-                self.position = frames;
+        while self.has_ended() {
+            self.end_step(&mut rested);
+            if self.comes_to_rest() && controls.is_standing() {
+                self.rest();
                 break;
             }
-            self.position -= frames;
+            self.leave_step();
             self.next_step(controls);
         }
         self.replan(controls);
@@ -172,8 +173,9 @@ impl GaitGenerator {
         controls
     }
 
-    /// Generates the next step and reports its initial contact.
+    /// Generates the next step and reports its initial contact; a walker at rest has both feet on the ground.
     pub(crate) fn next_step(&mut self, controls: &Controls) {
+        let rested = self.comes_to_rest();
         let fastest = self.steps.source().fastest_mps();
         let (leap_m, run_up) = self.next_leap(controls);
         let step_controls = StepControls {
@@ -185,10 +187,17 @@ impl GaitGenerator {
             self.lead(&run_up);
         }
         self.answered = None;
-        let side = self.shape().timing.leading;
-        if let Some(plant) = self.steps.source().planted().plant(side) {
-            self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
+        if !rested {
+            self.report_plant(self.shape().timing.leading);
         }
+    }
+
+    /// Reports the contact of the foot that comes to rest where a step has just ended standing, and not if the walker already `rested`.
+    pub(crate) fn end_step(&mut self, rested: &mut bool) {
+        if self.comes_to_rest() && !*rested {
+            self.report_plant(self.shape().timing.leading.other());
+        }
+        *rested = false;
     }
 
     /// Replans a step with a foot in the air for the current controls.
@@ -212,6 +221,33 @@ impl GaitGenerator {
 
     pub(crate) fn shape(&self) -> &StepShape {
         self.steps.source().shape()
+    }
+
+    /// Returns true when the current step has ended.
+    pub(crate) fn has_ended(&self) -> bool {
+        self.position >= self.shape().timing.frames as f32
+    }
+
+    /// Returns true when the current step ends standing.
+    pub(crate) fn comes_to_rest(&self) -> bool {
+        self.shape().amplitude.to < 1.0
+    }
+
+    /// Leaves an ended step; the excess time belongs to the next one.
+    pub(crate) fn leave_step(&mut self) {
+        self.position -= self.shape().timing.frames as f32;
+    }
+
+    /// Rests at the end of the step.
+    pub(crate) fn rest(&mut self) {
+        self.position = self.shape().timing.frames as f32;
+    }
+
+    /// Reports the initial contact of a foot that stands.
+    fn report_plant(&mut self, side: Side) {
+        if let Some(plant) = self.steps.source().planted().plant(side) {
+            self.report(Footstep::seen_from(&self.plan_from_start, side, plant));
+        }
     }
 
     /// Reports an initial contact while there is room for it.

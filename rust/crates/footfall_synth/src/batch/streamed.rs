@@ -46,7 +46,9 @@ pub(crate) fn from_standing(
         recording.step(Controls::STAND);
     }
     // The last step stops. The stop is requested in the second half of the previous step, which would itself stop if it were requested earlier.
-    let mut taken = 0;
+    // Each landing begins a step; the first begins from standing.
+    recording.step(walking);
+    let mut taken = 1;
     let steps = config.steps.max(2);
     for _ in 0..steps * longest {
         if taken + 1 == steps && recording.generator.share_of_step() >= 0.5 {
@@ -239,7 +241,7 @@ impl Recording {
         }
     }
 
-    /// Records a frame; returns the number of steps that began.
+    /// Records a frame; returns the number of feet that landed.
     fn step(&mut self, controls: Controls) -> usize {
         // The first frame is where the walker stands.
         let dt = if self.poses.is_empty() {

@@ -53,6 +53,13 @@ impl OwnWalk {
         Some((footstep, self.secs_to_next_step()))
     }
 
+    /// Returns the footstep of the foot that lands as the step ends.
+    pub(super) fn closing_footstep(&self) -> Option<Footstep> {
+        let side = self.shape.timing.leading.other();
+        let plant = self.ending.next.planter.as_ref()?.plants[side.index()];
+        Some(Footstep::seen_from(&self.plan_from_start, side, &plant))
+    }
+
     /// Returns the contacts this many frames after the step began.
     pub(super) fn contacts_at(&self, position: f32) -> [bool; 2] {
         let (frame, weight) = self.frame_at(position);

@@ -79,10 +79,13 @@ impl CrowdWalker {
             return;
         }
         let secs = dt_secs.min(MAX_DT_SECS);
+        let mut rested = false;
         if let Some(own) = &mut self.own {
+            rested = own.is_over();
             own.pass(secs);
         }
-        while self.own.as_ref().is_some_and(|own| own.is_over()) {
+        while let Some(own) = self.own.as_mut().filter(|own| own.is_over()) {
+            own.end_step(&mut rested);
             let led = next(self);
             let Some(own) = &mut self.own else { break };
             let Some(led) = led else {

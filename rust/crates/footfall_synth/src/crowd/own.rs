@@ -141,9 +141,11 @@ impl OwnWalk {
         ends: bool,
         tools: &mut StepTools,
     ) -> Option<f32> {
+        let mut rested = self.is_over();
         self.pass(dt_secs);
         let mut left = None;
         while self.is_over() {
+            self.end_step(&mut rested);
             if ends {
                 left = Some(self.stay());
                 break;
@@ -179,6 +181,14 @@ impl OwnWalk {
         let left = (self.position - frames) / self.frame_rate_hz;
         self.position = frames;
         left
+    }
+
+    /// Reports the contact of the foot that comes to rest where a step has just ended standing, and not if the walker already `rested`.
+    pub(super) fn end_step(&mut self, rested: &mut bool) {
+        if self.comes_to_rest() && !*rested {
+            self.footstep = self.closing_footstep();
+        }
+        *rested = false;
     }
 
     /// Continues with the next step after the end of one; a led step repeats another walker's.

@@ -19,6 +19,7 @@ impl OwnWalk {
         led: Option<&LedStep>,
         tools: &mut StepTools,
     ) {
+        let rested = self.comes_to_rest();
         let natural = self.number().wrapping_add(1);
         let styled = Arc::clone(&self.styled.0);
         let measured = &styled.measured;
@@ -78,7 +79,10 @@ impl OwnWalk {
         self.shape = *window.step();
         self.take_over(tools);
         self.landing = self.landing_of_step();
-        self.footstep = self.footstep_at(self.landing);
+        // A walker at rest has both feet on the ground.
+        if !rested {
+            self.footstep = self.footstep_at(self.landing);
+        }
     }
 
     /// Keeps the step that was just generated.

@@ -152,11 +152,13 @@ impl WalkFollower {
         let controls = self.controls();
         generator.begin_frame(&controls);
         let mut before = generator.position;
+        let mut rested = generator.has_ended();
         let pace = 1.0 + self.haste(generator);
         generator.pass_led(dt_secs * generator.frame_rate_hz * pace as f32);
         while generator.has_ended() {
+            generator.end_step(&mut rested);
             if !self.next_step(dt_secs, generator, shared_from_start) {
-                generator.rest_led();
+                generator.rest();
                 break;
             }
             before = 0.0;

@@ -205,26 +205,6 @@ impl GaitGenerator {
         self.position += frames;
     }
 
-    /// Returns true when the current step has ended.
-    pub(super) fn has_ended(&self) -> bool {
-        self.position >= self.shape().timing.frames as f32
-    }
-
-    /// Leaves an ended step; the excess time belongs to the next one.
-    pub(super) fn leave_step(&mut self) {
-        self.position -= self.shape().timing.frames as f32;
-    }
-
-    /// Rests at the end of the step.
-    pub(super) fn rest_led(&mut self) {
-        self.position = self.shape().timing.frames as f32;
-    }
-
-    /// Returns true when the current step ends standing.
-    pub(super) fn comes_to_rest(&self) -> bool {
-        self.shape().amplitude.to < 1.0
-    }
-
     /// Returns the frames until the end of the current step.
     pub(super) fn frames_left(&self) -> f32 {
         self.shape().timing.frames as f32 - self.position

@@ -217,3 +217,42 @@ fn a_state_of_an_earlier_format_goes_on_as_it_did() {
         }
     }
 }
+
+/// The formats 14 and 15 end with the spread of the feet in a replanned step; in 15 the turn of the head follows it.
+#[test]
+fn a_replanned_step_of_the_format_before_stands_on_the_same_feet() {
+    let skeleton = Skeleton::standard();
+    let turning = Controls {
+        turn_rate_radps: 1.2,
+        ..walking(1.3)
+    };
+    let mut replanned = 0;
+    for frames in 1..40 {
+        let mut walker = generator(Kind::Styled, 3);
+        run(&mut walker, &skeleton, &walking(1.3), 200);
+        for frame in 0..frames {
+            let turn_rate_radps = if frame < 10 { -1.2 } else { 1.2 };
+            let controls = Controls {
+                turn_rate_radps,
+                ..turning
+            };
+            run(&mut walker, &skeleton, &controls, 1);
+        }
+        let mut state = walker.state();
+        state[0] = 14;
+        state.truncate(state.len() - 2 * size_of::<f32>());
+        let mut other = generator(Kind::Styled, 4);
+        // Steps that were not replanned end without both.
+        if other.restore(&state).is_err() {
+            continue;
+        }
+        replanned += 1;
+        let [ours, others] = [walker, other].map(|mut w| run(&mut w, &skeleton, &turning, 60).0);
+        for (ours, other) in ours.iter().zip(&others) {
+            for foot in Side::BOTH.map(Side::foot) {
+                assert_eq!(ours.model.position(foot), other.model.position(foot));
+            }
+        }
+    }
+    assert!(replanned > 5, "{replanned}");
+}
