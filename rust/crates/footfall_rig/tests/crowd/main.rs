@@ -201,9 +201,8 @@ fn rows_that_meet_pass_through_each_other_without_bumping() {
     assert!(avoiding < 0.05 * straight, "{avoiding} of {straight} s");
 }
 
-/// Share of their time for which somebody is nearer to a walker than this, metres, of walkers that wander in a square of 16 m: each has 2 m².
-fn crowded(seed: u64, nearer_m: f32) -> f32 {
-    const PEOPLE: usize = 120;
+/// So many walkers that have wandered in a square of 16 m for five seconds.
+fn wanderers(seed: u64, people: usize) -> Crowd {
     let half = Vec2::splat(8.0);
     let settings = CrowdSettings {
         seed,
@@ -211,8 +210,15 @@ fn crowded(seed: u64, nearer_m: f32) -> f32 {
         ..CrowdSettings::default()
     };
     let mut crowd = Crowd::new(recipe(), Routing::Wander { half }, settings);
-    crowd.set_count(PEOPLE);
+    crowd.set_count(people);
     walk(&mut crowd, 5.0, |_| {});
+    crowd
+}
+
+/// Share of their time for which somebody is nearer to a walker than this, metres, of walkers that wander in a square of 16 m: each has 2 m².
+fn crowded(seed: u64, nearer_m: f32) -> f32 {
+    const PEOPLE: usize = 120;
+    let mut crowd = wanderers(seed, PEOPLE);
     let (mut near, mut frames) = (0, 0);
     walk(&mut crowd, 15.0, |crowd| {
         let places = places(crowd);
@@ -239,15 +245,7 @@ fn alone() -> [f32; 2] {
     const OVER: usize = 12;
     let (mut turning, mut way, mut secs) = (0.0, 0.0, 0.0);
     for seed in 0..SEEDS {
-        let half = Vec2::splat(8.0);
-        let settings = CrowdSettings {
-            seed,
-            half_area: half,
-            ..CrowdSettings::default()
-        };
-        let mut crowd = Crowd::new(recipe(), Routing::Wander { half }, settings);
-        crowd.set_count(1);
-        walk(&mut crowd, 5.0, |_| {});
+        let mut crowd = wanderers(seed, 1);
         let mut frames = Vec::new();
         walk(&mut crowd, 20.0, |crowd| {
             let agent = &crowd.agents()[0];

@@ -45,11 +45,11 @@ pub(crate) fn from_standing(
     for _ in 0..=rest {
         recording.step(Controls::STAND);
     }
-    // The last step stops. The stop is requested in the second half of the previous step, which would itself stop if it were requested earlier.
     // Each landing begins a step; the first begins from standing.
     recording.step(walking);
     let mut taken = 1;
     let steps = config.steps.max(2);
+    // The last step stops. The stop is requested in the second half of the previous step, which would itself stop if it were requested earlier.
     for _ in 0..steps * longest {
         if taken + 1 == steps && recording.generator.share_of_step() >= 0.5 {
             break;

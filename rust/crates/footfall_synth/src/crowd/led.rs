@@ -8,7 +8,6 @@ use super::tools::StepTools;
 use super::workshop::Workshop;
 use crate::config::MAX_DT_SECS;
 use crate::controls::GaitChoice;
-use crate::footstep::Footstep;
 use crate::gait::{Amplitude, Gait, StepControls};
 use crate::plan::{Planner, StepDraw, WINDOW};
 use footfall_core::{GroundTransform, Side};
@@ -126,12 +125,9 @@ impl OwnWalk {
     }
 
     fn start_from_aim(&self) -> Option<GroundTransform> {
-        let landing = self.shape.timing.leading.other();
-        let plant = self.ending.next.planter.as_ref()?.plants[landing.index()];
         let end = self.place_at(self.shape.timing.frames as f32);
-        let foot = Footstep::seen_from(&self.plan_from_start, landing, &plant);
         Some(GroundTransform {
-            position: foot.position,
+            position: self.closing_footstep()?.position,
             ..self.plan_from_start.local(&end)
         })
     }

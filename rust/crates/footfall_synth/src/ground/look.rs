@@ -10,6 +10,7 @@ use super::turning::on_the_spot;
 use footfall_core::Joint;
 use footfall_core::ease::hermite;
 use glam::{Quat, Vec2};
+use serde::{Deserialize, Serialize};
 
 /// Times for turning the head: at least, seconds, and more for each radian. The head of O3DE's actor turns by up to 220 °/s relative to his hips.
 const LEAST_SECS: f32 = 0.2;
@@ -29,7 +30,7 @@ const UNNOTICED_RADPS: f32 = 0.08;
 const CHEST_SHARE: f32 = 0.2;
 
 /// Turn of the head relative to the hips, radians, positive to the left, and its rate of change, rad/s.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(crate) struct Look {
     pub(crate) angle: f32,
     pub(crate) rate: f32,
@@ -116,8 +117,6 @@ fn turn_head(frame: &mut PlantedFrame, angle: f32) {
 
 #[cfg(test)]
 mod tests {
-    use super::super::planter_state::Lean;
-    use super::super::strafe::Strafe;
     use super::*;
     use footfall_ik::Plant;
     use glam::Vec3;
@@ -131,20 +130,8 @@ mod tests {
             heading: 0.0,
         };
         PlanterState {
-            plants: [plant; 2],
-            hips: Vec3::ZERO,
-            hips_velocity: None,
-            heading: 0.0,
             turn_rate,
-            ground_position: Vec3::ZERO,
-            ground_velocity: None,
-            stride: 1.0,
-            spread: 0.0,
-            strafe: Strafe::NONE,
-            balance: Vec2::ZERO,
-            airborne: None,
-            lean: Lean::default(),
-            look: Look::default(),
+            ..PlanterState::first([plant; 2], 0.0)
         }
     }
 

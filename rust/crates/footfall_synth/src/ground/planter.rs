@@ -1,14 +1,12 @@
 //! Planter: feet, legs and the state that is carried from step to step.
 
 use super::generated::GeneratedFrame;
-use super::look::Look;
-use super::planter_state::{Lean, PlanterState};
-use super::strafe::Strafe;
+use super::planter_state::PlanterState;
 use crate::plan::StepTiming;
 use footfall_core::rotation::from_heading;
 use footfall_core::{Side, Skeleton};
 use footfall_ik::{Leg, Plant, RockerFoot};
-use glam::{Vec2, Vec3};
+use glam::Vec3;
 
 /// Planter of one walker; its parts are in the files beside this one.
 #[derive(Clone, Debug)]
@@ -37,22 +35,7 @@ impl Planter {
             let foot = &feet[side.index()];
             foot.plant_under(level * leg.ankle, heading + leg.heading(), leg.pitch)
         });
-        let state = PlanterState {
-            plants,
-            hips: Vec3::ZERO,
-            hips_velocity: None,
-            heading,
-            turn_rate: 0.0,
-            ground_position: Vec3::ZERO,
-            ground_velocity: None,
-            stride: 1.0,
-            spread: 0.0,
-            strafe: Strafe::NONE,
-            balance: Vec2::ZERO,
-            airborne: None,
-            lean: Lean::default(),
-            look: Look::default(),
-        };
+        let state = PlanterState::first(plants, heading);
         let mut planter = Self::resume(skeleton, frame_secs, &state);
         let standing = match timing.take_off {
             Some(_) => timing.leading,

@@ -34,6 +34,26 @@ pub(crate) struct PlanterState {
 }
 
 impl PlanterState {
+    /// Returns the state of a walk that begins at the origin on these plants, under this heading.
+    pub(super) fn first(plants: [Plant; 2], heading: f32) -> Self {
+        Self {
+            plants,
+            hips: Vec3::ZERO,
+            hips_velocity: None,
+            heading,
+            turn_rate: 0.0,
+            ground_position: Vec3::ZERO,
+            ground_velocity: None,
+            stride: 1.0,
+            spread: 0.0,
+            strafe: Strafe::NONE,
+            balance: Vec2::ZERO,
+            airborne: None,
+            lean: Lean::default(),
+            look: Look::default(),
+        }
+    }
+
     /// Returns the speed of the hips over the ground, m/s, and the way until they are above a foot, metres.
     pub(crate) fn room(&self, side: Side) -> (f32, f32) {
         let velocity = self.hips_velocity.unwrap_or(Vec3::ZERO).with_y(0.0);

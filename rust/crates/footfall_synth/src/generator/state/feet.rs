@@ -70,10 +70,7 @@ impl Feet {
         let midway = stance.midway.unwrap_or_else(|| Midway::at_end(&feet));
         PlanterState {
             spread: midway.spread,
-            look: Look {
-                angle: midway.look[0],
-                rate: midway.look[1],
-            },
+            look: midway.look,
             ..feet
         }
     }
@@ -91,11 +88,11 @@ impl Feet {
     }
 }
 
-/// Spread of the feet, and turn of the head and its rate of change, at the beginning of a step, where they are not as at the end of one: a step was replanned, or a head still turns.
+/// Spread of the feet and turn of the head at the beginning of a step, where they are not as at the end of one: a step was replanned, or a head still turns.
 #[derive(Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub(super) struct Midway {
     spread: f32,
-    look: [f32; 2],
+    look: Look,
 }
 
 impl Midway {
@@ -103,17 +100,16 @@ impl Midway {
     pub(super) fn of(feet: &PlanterState) -> Option<Self> {
         let midway = Self {
             spread: feet.spread,
-            look: [feet.look.angle, feet.look.rate],
+            look: feet.look,
         };
         (midway != Self::at_end(feet)).then_some(midway)
     }
 
     /// Returns that of feet at the end of a step.
     fn at_end(feet: &PlanterState) -> Self {
-        let look = look(feet);
         Self {
             spread: spread(feet),
-            look: [look.angle, look.rate],
+            look: look(feet),
         }
     }
 
@@ -123,12 +119,11 @@ impl Midway {
             return parts.next(since::HEADS_TURN, None);
         }
         let spread: Option<f32> = parts.next(since::FEET_SPREAD, None)?;
-        let look = [0.0; 2];
+        let look = Look::default();
         Ok(spread.map(|spread| Self { spread, look }))
     }
 
     pub(super) fn numbers(&self) -> impl Iterator<Item = f32> {
-        let [angle, rate] = self.look;
-        [self.spread, angle, rate].into_iter()
+        [self.spread, self.look.angle, self.look.rate].into_iter()
     }
 }
