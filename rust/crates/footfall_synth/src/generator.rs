@@ -159,7 +159,7 @@ impl GaitGenerator {
                 break;
             }
             self.leave_step();
-            self.next_step(controls);
+            self.next_step(controls, None);
         }
         self.replan(controls);
         self.show(dt_secs, controls, out);
@@ -173,13 +173,14 @@ impl GaitGenerator {
         controls
     }
 
-    /// Generates the next step and reports its initial contact; a walker at rest has both feet on the ground.
-    pub(crate) fn next_step(&mut self, controls: &Controls) {
+    /// Generates the next step and reports its initial contact; a walker at rest has both feet on the ground. `brakes` is [that of the step's controls](StepControls::brakes).
+    pub(crate) fn next_step(&mut self, controls: &Controls, brakes: Option<bool>) {
         let rested = self.comes_to_rest();
         let fastest = self.steps.source().fastest_mps();
         let (leap_m, run_up) = self.next_leap(controls);
         let step_controls = StepControls {
             leap_m,
+            brakes,
             ..StepControls::after(self.shape().amplitude, *controls, fastest, self.detail)
         };
         self.steps.source_mut().advance(&step_controls);

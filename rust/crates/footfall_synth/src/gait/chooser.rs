@@ -153,7 +153,7 @@ impl StepChooser {
         let forwards = is_forwards(*velocity_mps);
         let gently = passed.braking_mps2(left as f32) < HARDEST_BRAKING_MPS2;
         let closes = controls
-            .closes
+            .brakes
             .unwrap_or(passed.share < CLOSED_FROM && gently && forwards);
         let inside = before.amplitude == Amplitude::WALK;
         let stands = controls.amplitude.to < 1.0;

@@ -17,8 +17,8 @@ pub(crate) struct StepControls {
     pub(crate) gait: GaitChoice,
     /// Rise of the hips in a leap, metres; `None` for other steps.
     pub(crate) leap_m: Option<f32>,
-    /// True if a step that changes in its middle brings the feet together, false if not; `None` to choose.
-    pub(crate) closes: Option<bool>,
+    /// True if a walked step that changes in its middle brings the feet together, or a run's step slows down, false if not; `None` to choose.
+    pub(crate) brakes: Option<bool>,
     pub(crate) detail: Detail,
 }
 
@@ -39,7 +39,7 @@ impl StepControls {
             },
             gait: controls.gait,
             leap_m: None,
-            closes: None,
+            brakes: None,
             detail,
         }
     }

@@ -27,8 +27,11 @@ const TURNS_RAD: f32 = 0.5;
 
 impl StepControls {
     /// Returns true when a runner on legs of this length is asked for a speed at which people walk, straight ahead. The choice of gait does not count: followers over a network know it only as
-    /// the gait of the step.
+    /// the gait of the step, and whether a run slows down as the sender's choice, which may have come of controls that were lost on the way.
     pub(super) fn slows_to_walk(&self, before: Gait, velocity_mps: Vec2, leg_length: f32) -> bool {
+        if let (GaitChoice::Run, Some(brakes)) = (self.gait, self.brakes) {
+            return brakes && before == Gait::Run;
+        }
         let asked = self.velocity_mps;
         let suits = GaitChoice::Auto.of_step(Gait::Run, asked, leg_length, false);
         let straight =
@@ -42,6 +45,11 @@ impl StepControls {
 }
 
 impl StepRequest {
+    /// Returns true for a run that [slows down](Self::slowing): no other is so much quicker than it is long.
+    pub(crate) fn run_slows(&self) -> bool {
+        self.manner.pace.tempo > QUICKER * self.manner.pace.stride
+    }
+
     /// Returns the request for a step of this gait that slows down: quicker and shorter.
     pub(super) fn slowing(mut self, gait: Gait) -> Self {
         let pace = &mut self.manner.pace;

@@ -315,7 +315,7 @@ impl WalkFollower {
             self.controls()
         };
         generator.leave_step();
-        generator.next_led(number, &controls, made.map_or(0.0, |made| made.rise_m));
+        generator.next_led(number, &controls, made.as_ref());
         if let Some(made) = made {
             generator.aim_at(&made.aim(shared_from_start));
         } else if stands && let Some(resting) = self.resting(shared_from_start) {
@@ -358,7 +358,7 @@ impl WalkFollower {
         };
         self.rested_secs = 0.0;
         generator.leave_step();
-        generator.next_led(number, &controls, 0.0);
+        generator.next_led(number, &controls, None);
         generator.aim_at(&resting);
         true
     }

@@ -138,8 +138,13 @@ impl GaitGenerator {
         begun
     }
 
-    /// Generates the step of this number.
-    pub(super) fn next_led(&mut self, number: u16, controls: &Controls, rise_m: f32) {
+    /// Generates the step of this number, in the sender's way where its planning is known.
+    pub(super) fn next_led(
+        &mut self,
+        number: u16,
+        controls: &Controls,
+        as_planned: Option<&Planning>,
+    ) {
         let config = self.config;
         if let Some(steps) = self.styled_mut()
             && steps.number().wrapping_add(1) != number
@@ -147,10 +152,11 @@ impl GaitGenerator {
             let draw = steps.draw_of(&config, number);
             steps.window.redraw_next(draw);
         }
+        let rise_m = as_planned.map_or(0.0, |planning| planning.rise_m);
         if rise_m > 0.0 {
             self.jump(rise_m);
         }
-        self.next_step(controls);
+        self.next_step(controls, as_planned.map(|planning| planning.brakes));
         // A jump that is not this step's leap is dropped.
         self.pending_jump = None;
     }
@@ -165,7 +171,7 @@ impl GaitGenerator {
         let (position, detail) = (self.position, self.detail);
         let fastest = self.steps.source().fastest_mps();
         let step_controls = StepControls {
-            closes: Some(as_planned.closes),
+            brakes: Some(as_planned.brakes),
             ..StepControls::after(self.shape().amplitude, as_planned.controls, fastest, detail)
         };
         let Some(steps) = self.styled_mut() else {

@@ -17,8 +17,8 @@ pub(super) struct Planning {
     pub(super) at_secs: f64,
     pub(super) controls: Controls,
     pub(super) rise_m: f32,
-    /// True when the step brings the feet together.
-    pub(super) closes: bool,
+    /// True when the step brings the feet together or is one of a run that slows down.
+    pub(super) brakes: bool,
     /// Place where the step ends, in the shared space.
     aim: GroundTransform,
     /// True if that is the place of a resting walker.
@@ -42,7 +42,7 @@ impl Planning {
             at_secs: sent_secs - f64::from(update.age_frames) / f64::from(frame_rate_hz),
             controls: update.controls,
             rise_m: update.rise_m,
-            closes: update.closes,
+            brakes: update.brakes,
             aim: update.aim,
             rests: update.rests,
         }

@@ -81,7 +81,7 @@ impl WalkSender {
             age_frames: generator.position as u8,
             controls: controls(steps, generator),
             rests,
-            closes: generator.comes_to_rest(),
+            brakes: brakes(steps, generator),
             rise_m: rise_m(steps, generator),
             aim,
         };
@@ -122,6 +122,14 @@ fn controls(steps: &StyledSteps, generator: &GaitGenerator) -> Controls {
             Gait::Run => GaitChoice::Run,
         },
         crouch: crouch.map_or(0.0, |(crouch, ..)| crouch.amount),
+    }
+}
+
+/// Returns true when the current step brings the feet together or is one of a run that slows down.
+fn brakes(steps: &StyledSteps, generator: &GaitGenerator) -> bool {
+    match generator.gait() {
+        Gait::Walk => generator.comes_to_rest(),
+        Gait::Run => steps.window.origin().request.run_slows(),
     }
 }
 

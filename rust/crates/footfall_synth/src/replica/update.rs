@@ -2,7 +2,7 @@
 //!
 //! | bytes | content | unit |
 //! | --- | --- | --- |
-//! | 0 | format (upper half); rests, runs, stops, closes | |
+//! | 0 | format (upper half); rests, runs, stops, brakes | |
 //! | 1–2 | tag of the walker's identity | |
 //! | 3–4 | the sender's time, which wraps after 262 s | 4 ms |
 //! | 5–6 | number of the step: even ones begin with the left foot's contact | |
@@ -31,7 +31,7 @@ pub(super) const FORMAT: u8 = 2;
 const RESTS: u8 = 1;
 const RUNS: u8 = 2;
 const STOPS: u8 = 4;
-const CLOSES: u8 = 8;
+const BRAKES: u8 = 8;
 
 const PASSED_UNITS: f32 = 255.0;
 const PLACE_UNITS: f32 = 1000.0;
@@ -71,8 +71,8 @@ pub(super) struct WalkUpdate {
     pub(super) controls: Controls,
     /// True when the walker has stopped and rests.
     pub(super) rests: bool,
-    /// True when the step brings the feet together, at the end of a walk.
-    pub(super) closes: bool,
+    /// True when the step brings the feet together, at the end of a walk, or is one of a run that slows down.
+    pub(super) brakes: bool,
     /// Rise of the hips in a jump, metres; 0 is none.
     pub(super) rise_m: f32,
     /// Place of the landing foot or the resting walker, under the walker's heading then, in the shared space.
@@ -128,7 +128,7 @@ impl WalkUpdate {
         let flags = flag(self.rests, RESTS)
             | flag(gait == GaitChoice::Run, RUNS)
             | flag(self.controls.is_standing(), STOPS)
-            | flag(self.closes, CLOSES);
+            | flag(self.brakes, BRAKES);
         let heading = (HEADING_STEPS * self.aim.heading.rem_euclid(TAU) / TAU).round() as u16;
         let crouch = (CROUCH_UNITS * crouch.clamp(0.0, 1.0)).round() as u16;
         let mut bytes = [0; UPDATE_BYTES];
@@ -200,7 +200,7 @@ impl WalkUpdate {
                 crouch: f32::from(last >> 12) / CROUCH_UNITS,
             },
             rests: has(RESTS),
-            closes: has(CLOSES),
+            brakes: has(BRAKES),
             rise_m: f32::from(bytes[13]) / RISE_UNITS,
             aim: GroundTransform {
                 position: Vec3::new(
@@ -233,7 +233,7 @@ mod tests {
                 crouch: 0.6,
             },
             rests: false,
-            closes: true,
+            brakes: true,
             rise_m: 0.31,
             aim: GroundTransform {
                 position: place,
@@ -255,7 +255,7 @@ mod tests {
             prop_assert!(off.x < 0.002 && off.z < 0.002 && off.y < 0.021, "{off}");
             let turned = footfall_core::rotation::wrap_angle(heard.aim.heading - heading);
             prop_assert!(turned.abs() < 0.0008, "{turned}");
-            prop_assert_eq!((heard.planned, heard.rests, heard.closes), (sent.planned, false, true));
+            prop_assert_eq!((heard.planned, heard.rests, heard.brakes), (sent.planned, false, true));
             prop_assert_eq!((heard.tag, heard.time, heard.age_frames), (0xbeef, 65_000, 17));
         }
 

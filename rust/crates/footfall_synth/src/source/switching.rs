@@ -174,7 +174,7 @@ impl SwitchingSteps {
         let speed = ratio * self.own_speed_mps;
         let controls = StepControls {
             leap_m: None,
-            closes: None,
+            brakes: None,
             gait: GaitChoice::Walk,
             velocity_mps: speed as f32 * Vec2::Y,
             turn_rate: 0.0,
