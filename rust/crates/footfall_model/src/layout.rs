@@ -4,6 +4,7 @@
 //! joint in the order of [`Joint::ALL`]; the hips' with the walker's heading removed (Tilmanne et al. 2012, section 4).
 //! An observation appends the first and second time differences (equations 2 and 3): statics, Δ, Δ².
 
+use core::ops::Neg;
 use footfall_core::rotation::{exp_maps, from_heading, log_map, log_map_near};
 use footfall_core::{JOINT_COUNT, Joint, Pose};
 use glam::{Quat, Vec3};
@@ -56,7 +57,7 @@ pub fn decode(features: &[f32], rotations: &mut [Quat; JOINT_COUNT]) {
 ///
 /// # Panics
 /// When `features` is not a whole number of frames of [`FEATURE_COUNT`].
-pub fn mirror(features: &mut [f64]) {
+pub fn mirror<T: Copy + Neg<Output = T>>(features: &mut [T]) {
     assert!(
         features.len().is_multiple_of(FEATURE_COUNT),
         "features come in blocks of {FEATURE_COUNT}"

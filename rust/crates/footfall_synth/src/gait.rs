@@ -6,6 +6,7 @@
 mod applied;
 mod chooser;
 mod direction;
+mod first_foot;
 mod gaining;
 mod kinds;
 mod pace;
@@ -16,6 +17,7 @@ mod stand;
 pub(crate) use applied::AppliedControls;
 pub(crate) use chooser::StepChooser;
 pub(crate) use direction::{overstep, pelvis_turn, seen_from_pelvis};
+pub(crate) use first_foot::lifts_other_foot;
 pub use kinds::Gait;
 pub(crate) use kinds::{FASTEST_WALK_MPS, GRAVITY_MPS2, STOPPABLE_MPS, WIDEST_RUN_RAD};
 pub(crate) use pace::{Pace, PaceTable, SAMPLES, tempo_and_stride};

@@ -15,7 +15,7 @@ use crate::controls::Controls;
 use crate::detail::Detail;
 use crate::error::SynthError;
 use crate::footstep::Footstep;
-use crate::gait::StepControls;
+use crate::gait::{StepControls, lifts_other_foot};
 use crate::moves::Moves;
 use crate::plan::StepShape;
 use crate::source::{Steps, StyleSpace, StyledSteps, SwitchingSteps};
@@ -154,11 +154,15 @@ impl GaitGenerator {
         }
         while self.has_ended() {
             self.end_step(&mut rested);
-            if self.comes_to_rest() && controls.is_standing() {
+            let rests = self.comes_to_rest();
+            if rests && controls.is_standing() {
                 self.rest();
                 break;
             }
             self.leave_step();
+            if rests {
+                self.choose_foot(controls);
+            }
             self.next_step(controls, None);
         }
         self.replan(controls);
@@ -171,6 +175,19 @@ impl GaitGenerator {
         let controls = self.steered(controls);
         self.requested_mps = controls.velocity().y.max(0.0);
         controls
+    }
+
+    /// Has the next step, from standing, lift the foot that people would lift.
+    fn choose_foot(&mut self, controls: &Controls) {
+        let Steps::Styled(steps) = &mut self.steps else {
+            return;
+        };
+        let aside = self.life.as_ref().map_or(0.0, Life::aside);
+        let usual = steps.window.step().timing.leading;
+        if lifts_other_foot(controls, aside, usual) {
+            let other = steps.number().wrapping_add(2);
+            steps.go_on_with(&self.config, other);
+        }
     }
 
     /// Generates the next step and reports its initial contact; a walker at rest has both feet on the ground. `brakes` is [that of the step's controls](StepControls::brakes).

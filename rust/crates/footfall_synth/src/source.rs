@@ -5,6 +5,7 @@
 
 mod buffers;
 mod measured;
+mod numbered;
 mod step_source;
 mod style_space;
 mod styled;

@@ -6,9 +6,10 @@ use super::own::OwnWalk;
 use super::rest::{Rest, RestBuffers, leave};
 use super::tools::StepTools;
 use crate::controls::Controls;
-use crate::gait::{Amplitude, StepControls};
+use crate::gait::{Amplitude, StepControls, lifts_other_foot};
 use crate::plan::{Planner, WINDOW};
 use crate::source::Origin;
+use crate::standing::Life;
 use std::sync::Arc;
 
 impl OwnWalk {
@@ -21,6 +22,11 @@ impl OwnWalk {
     ) {
         let rested = self.comes_to_rest();
         let natural = self.number().wrapping_add(1);
+        let number = match led {
+            Some(led) => led.number,
+            None if self.sets_out_otherwise(&controls) => natural.wrapping_add(1),
+            None => natural,
+        };
         let styled = Arc::clone(&self.styled.0);
         let measured = &styled.measured;
         let step_controls = StepControls::after(
@@ -36,7 +42,7 @@ impl OwnWalk {
                 .chooser
                 .request(&step_controls, ending.blend.gait, &mut ending.velocity_mps);
         let blend = measured.blend_of(gait);
-        let origin = Origin {
+        let mut origin = Origin {
             request,
             ..ending.next.clone()
         };
@@ -56,10 +62,14 @@ impl OwnWalk {
         self.chance.resume(planner, &ending.draws);
         let mut draws = ending.draws.clone();
         draws.rotate_left(1);
-        match led {
-            Some(led) if led.number != natural => self.redraw(led.number, planner, &mut draws),
-            _ if self.even => draws[WINDOW - 1] = Planner::mean_draw(leading),
-            _ => draws[WINDOW - 1] = planner.draw(leading),
+        if number != natural {
+            self.redraw(number, planner, &mut draws);
+            let [before, next, _] = &mut draws;
+            before.change_feet(next.side, &mut origin.tie);
+        } else if self.even {
+            draws[WINDOW - 1] = Planner::mean_draw(leading);
+        } else {
+            draws[WINDOW - 1] = planner.draw(leading);
         }
         let blends = [&self.ending.blend, blend];
         // The model gave a trajectory when the walker was made, so it gives one now.
@@ -83,6 +93,15 @@ impl OwnWalk {
         if !rested {
             self.footstep = self.footstep_at(self.landing);
         }
+    }
+
+    /// Returns true when people who stand as it does set out for these controls with the other foot than the one whose turn it is.
+    fn sets_out_otherwise(&self, controls: &Controls) -> bool {
+        if self.even || !self.comes_to_rest() || controls.is_standing() {
+            return false;
+        }
+        let aside = self.life.as_ref().map_or(0.0, Life::aside);
+        lifts_other_foot(controls, aside, self.shape.timing.leading)
     }
 
     /// Keeps the step that was just generated.

@@ -6,9 +6,8 @@ use crate::controls::{Controls, GaitChoice};
 use crate::gait::{Amplitude, AppliedControls, Gait, StepControls};
 use crate::generator::GaitGenerator;
 use crate::ground::Displacement;
-use crate::plan::{Deadline, StepDraw};
-use crate::source::{Aim, StepSource as _, Steps, StyledSteps, planner_of};
-use footfall_core::Side;
+use crate::plan::Deadline;
+use crate::source::{Aim, StepSource as _, Steps, StyledSteps};
 
 /// Moment of a walk at which to begin.
 #[derive(Clone, Copy, Debug)]
@@ -21,34 +20,12 @@ pub(super) struct Beginning {
 }
 
 impl StyledSteps {
-    /// Returns the number of the current step: even ones begin with the left foot's contact. It wraps.
-    pub(super) fn number(&self) -> u16 {
-        let strides = self.planner.strides() as u16;
-        let right = self.window.step().timing.leading == Side::Right;
-        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
-    }
-
     /// Returns the share of the current step that had passed when it was last planned.
     pub(super) fn passed(&self) -> f32 {
         self.window
             .origin()
             .remainder
             .map_or(0.0, |rest| rest.passed)
-    }
-
-    /// Advances chance to the step of this number and returns its draw.
-    fn draw_of(&mut self, config: &GeneratorConfig, number: u16) -> StepDraw {
-        let Self {
-            planner,
-            space,
-            measured,
-            ..
-        } = self;
-        planner.draw_of(number, || {
-            let mut fresh = planner_of(space, config);
-            fresh.set_model(&measured.blend.model);
-            fresh
-        })
     }
 
     /// Restarts in the step of this number; returns true on success.
@@ -146,11 +123,8 @@ impl GaitGenerator {
         as_planned: Option<&Planning>,
     ) {
         let config = self.config;
-        if let Some(steps) = self.styled_mut()
-            && steps.number().wrapping_add(1) != number
-        {
-            let draw = steps.draw_of(&config, number);
-            steps.window.redraw_next(draw);
+        if let Some(steps) = self.styled_mut() {
+            steps.go_on_with(&config, number);
         }
         let rise_m = as_planned.map_or(0.0, |planning| planning.rise_m);
         if rise_m > 0.0 {

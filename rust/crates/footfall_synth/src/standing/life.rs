@@ -5,6 +5,7 @@ use super::sway::{Stander, StandingTables, Sway};
 use crate::config::GeneratorConfig;
 use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
+use footfall_model::FEATURE_COUNT;
 use glam::Quat;
 use std::sync::Arc;
 
@@ -115,6 +116,12 @@ impl Life {
     /// Returns true when nothing of it is visible.
     pub(crate) fn is_still(&self) -> bool {
         self.amount <= 0.0 || self.moment.share <= 0.0
+    }
+
+    /// Returns the distance of the hips from the middle of the feet, as a share of the leg's length, positive to the left.
+    pub(crate) fn aside(&self) -> f32 {
+        let sway = self.tables.at(&self.stander, self.moment.secs);
+        self.amount * self.moment.share * sway[FEATURE_COUNT]
     }
 
     /// Adds the standing motion of a moment to a still pose. `level` is the rotation under which the walker faces +Z.

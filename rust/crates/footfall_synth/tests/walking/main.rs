@@ -14,6 +14,7 @@ mod quick;
 mod run_response;
 mod run_up;
 mod running;
+mod setting_out;
 mod slow;
 mod standing;
 mod strafing;

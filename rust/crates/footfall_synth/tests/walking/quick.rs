@@ -243,12 +243,12 @@ pub(crate) fn turned_to(
 #[test]
 fn whoever_sets_out_to_the_side_turns_no_farther_than_asked() {
     let skeleton = Skeleton::standard();
-    for seed in 1..7 {
+    for (seed, side) in (1..13).flat_map(|seed| [(seed, 1.0), (seed, -1.0)]) {
         let (mut walker, mut frames) = stood(seed, 40);
-        frames.extend(turned_to(&mut walker, (FRAC_PI_2, 1.3), 120));
-        let secs = secs_until(&frames, 40, |velocity| velocity.x > 0.8 * 1.3);
+        frames.extend(turned_to(&mut walker, (side * FRAC_PI_2, 1.3), 120));
+        let secs = secs_until(&frames, 40, |velocity| side * velocity.x > 0.8 * 1.3);
         assert!(secs < 0.5, "seed {seed}: {secs} s");
-        let headings = frames[40..].iter().map(|frame| frame.heading);
+        let headings = frames[40..].iter().map(|frame| side * frame.heading);
         let farthest = headings.fold(0.0, f32::max) - FRAC_PI_2;
         assert!(farthest < 0.15, "seed {seed}: {farthest} rad too far");
         assert_planted_within(&skeleton, &frames, 0.02);

@@ -2,7 +2,7 @@
 
 use super::StepWindow;
 use crate::ground::Displacement;
-use crate::plan::{StepDraw, WINDOW};
+use crate::plan::{Planner, StepDraw, WINDOW};
 use crate::source::buffers::StepBuffers;
 
 impl StepWindow {
@@ -18,9 +18,16 @@ impl StepWindow {
         true
     }
 
-    /// Replaces the draw of the step after the current one.
-    pub(crate) fn redraw_next(&mut self, draw: StepDraw) {
-        self.draws[WINDOW - 1] = draw;
+    /// Replaces the draw of the step after the current one. If that lifts the same foot, the current step, which has to end standing, counts as one of the other foot.
+    pub(crate) fn redraw_next(&mut self, planner: &mut Planner, draw: StepDraw) {
+        let [.., current, next] = &mut self.draws;
+        *next = draw;
         self.stale = true;
+        if current.change_feet(next.side, &mut self.end) {
+            let plan = &mut self.plans[WINDOW - 2];
+            let request = &self.origin.request;
+            planner.plan_step(current, request.manner, &self.blend.statistics, plan);
+            plan.shape.set_amplitude(request.amplitude);
+        }
     }
 }
