@@ -10,7 +10,7 @@ use glam::Vec3;
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 use std::io::{Read as _, Write as _};
 use std::net::{SocketAddr, TcpListener, TcpStream, UdpSocket};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 fn udp_link() -> (Link, SocketAddr) {
     let link = udp::listen(UdpConfig {
@@ -132,9 +132,10 @@ fn an_owotrack_phone_is_greeted_and_heard() {
     let mut reply = [0; 64];
     let length = socket.recv(&mut reply).unwrap();
     assert_eq!(&reply[..length], b"\x03Hey OVR =D 5");
-    // Turning about its own x, which is level, while up is along its y.
+    // Turning about its own x, which is level, while up is along its y: by the clock, for a busy machine sleeps longer.
+    let begun = Instant::now();
     for n in 0_u64..150 {
-        let angle = 0.02 * n as f32;
+        let angle = 2.0 * begun.elapsed().as_secs_f32();
         let turn = glam::Quat::from_rotation_x(std::f32::consts::FRAC_PI_2 + angle);
         socket
             .send(&encode::slimevr(
