@@ -178,9 +178,12 @@ fn a_style_is_made_from_recordings_and_saved() {
 #[test]
 fn work_that_is_cancelled_says_so_and_shows_nothing() {
     let world = World::new();
-    // So many that a busy machine is not done before the click.
-    let mut window = world.evaluation_window(10);
-    click(&mut window, "Run the evaluation");
+    // So many, and so few frames, that a busy machine is not done before the click.
+    let mut window = world.evaluation_window(15);
+    window.get_by_label("Run the evaluation").click();
+    while window.query_by_label("Cancel").is_none() {
+        window.step();
+    }
     click(&mut window, "Cancel");
     settle(&mut window);
     let message = window.state().message().unwrap();
