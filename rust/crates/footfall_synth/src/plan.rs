@@ -17,6 +17,7 @@ mod timing;
 mod window;
 
 pub(crate) use fine_draw::FineDraw;
+pub(crate) use numbering::step_number;
 pub(crate) use planner::Planner;
 pub(crate) use remainder::{Deadline, Remainder};
 pub(crate) use statistics::Statistics;

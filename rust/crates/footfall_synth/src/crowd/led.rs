@@ -9,8 +9,8 @@ use super::workshop::Workshop;
 use crate::config::MAX_DT_SECS;
 use crate::controls::GaitChoice;
 use crate::gait::{Amplitude, Gait, StepControls};
-use crate::plan::{Planner, StepDraw, WINDOW};
-use footfall_core::{GroundTransform, Side};
+use crate::plan::{Planner, StepDraw, WINDOW, step_number};
+use footfall_core::GroundTransform;
 use std::sync::Arc;
 
 impl CrowdWalker {
@@ -119,9 +119,7 @@ impl CrowdWalker {
 impl OwnWalk {
     /// Returns the number of the current step.
     pub(super) fn number(&self) -> u16 {
-        let right = self.shape.timing.leading == Side::Right;
-        let strides = self.chance.strides as u16;
-        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
+        step_number(self.chance.strides, self.shape.timing.leading)
     }
 
     fn start_from_aim(&self) -> Option<GroundTransform> {

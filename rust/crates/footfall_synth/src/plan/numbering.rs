@@ -10,6 +10,13 @@ const STRIDES: u32 = 0x7fff;
 /// Maximum number of strides drawn to reach a later one; beyond it, and for earlier ones, drawing starts from the seed.
 const STRIDES_AHEAD: u32 = 64;
 
+/// Returns the number of the step that this foot's contact begins, in the last of so many drawn strides: even ones begin with the left foot's. It wraps.
+pub(crate) fn step_number(strides: u32, leading: Side) -> u16 {
+    (strides as u16)
+        .wrapping_mul(2)
+        .wrapping_sub(u16::from(leading == Side::Right))
+}
+
 impl Planner {
     /// Advances chance to the step of this number and returns its draw. Even numbers begin with the left foot's contact. `fresh` makes the walker before its first step.
     pub(crate) fn draw_of(&mut self, number: u16, fresh: impl FnOnce() -> Self) -> StepDraw {

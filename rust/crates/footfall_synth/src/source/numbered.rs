@@ -3,15 +3,12 @@
 use super::StyledSteps;
 use super::styled::planner_of;
 use crate::config::GeneratorConfig;
-use crate::plan::StepDraw;
-use footfall_core::Side;
+use crate::plan::{StepDraw, step_number};
 
 impl StyledSteps {
     /// Returns the number of the current step: even ones begin with the left foot's contact. It wraps.
     pub(crate) fn number(&self) -> u16 {
-        let strides = self.planner.strides() as u16;
-        let right = self.window.step().timing.leading == Side::Right;
-        strides.wrapping_mul(2).wrapping_sub(u16::from(right))
+        step_number(self.planner.strides(), self.window.step().timing.leading)
     }
 
     /// Advances chance to the step of this number and returns its draw.
