@@ -1,6 +1,6 @@
 //! Choice of the next step: its gait, velocity and pace by the controls.
 
-use super::direction::pelvis_turn;
+use super::direction::{pelvis_turn, sidles};
 use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::{Pace, PaceTable};
 use super::request::{Manner, Passed, StepControls, StepRequest};
@@ -50,6 +50,10 @@ const CLOSED_FROM: f64 = 0.45;
 const HARDEST_BRAKING_MPS2: f32 = 13.0;
 const KEPT_SHARE: f32 = 0.6;
 const BRISK_MPS: [f32; 2] = [0.7, 1.1];
+/// The hardest braking in a step to the side that [gathers](Passed::gathers) the feet, m/s², along a cubic that is harder than the hips' way; and the distance of a standing foot from the
+/// middle of the body, as a share of the leg, by which those hips stop before they are above it.
+const HARDEST_GATHERING_MPS2: f32 = 18.0;
+const BESIDE_SHARE: f32 = 0.1;
 /// Largest sideways share of the way forwards with which a velocity counts as forwards: such a step can still end the walk.
 const STRAIGHT: f32 = 0.2;
 
@@ -120,7 +124,12 @@ impl StepChooser {
             amplitude,
             turn_rate: controls.turn_rate,
             velocity_mps: *velocity_mps,
-            facing,
+            // A pelvis that is turned to the way comes back as the walker stops.
+            facing: if amplitude.to < 1.0 {
+                self.walk.facing
+            } else {
+                facing
+            },
             leap_m: controls.leap_m,
         };
         (self.changing(request, controls, gait, slows), gait)
@@ -151,10 +160,17 @@ impl StepChooser {
         let secs = passed.whole_frames / self.frame_rate_hz;
         let left = (1.0 - passed.share) * secs;
         let forwards = is_forwards(*velocity_mps);
-        let gently = passed.braking_mps2(left as f32) < HARDEST_BRAKING_MPS2;
+        let gathers = passed.gathers(*velocity_mps);
+        let (beside_m, hardest) = if gathers {
+            (BESIDE_SHARE * self.leg_length, HARDEST_GATHERING_MPS2)
+        } else {
+            (0.0, HARDEST_BRAKING_MPS2)
+        };
+        let gently = passed.braking_mps2(left as f32, beside_m) < hardest;
+        let early = passed.share < CLOSED_FROM;
         let closes = controls
             .brakes
-            .unwrap_or(passed.share < CLOSED_FROM && gently && forwards);
+            .unwrap_or(early && gently && (forwards || gathers));
         let inside = before.amplitude == Amplitude::WALK;
         let stands = controls.amplitude.to < 1.0;
         let stops = gait == Gait::Walk && inside && stands;
@@ -169,6 +185,14 @@ impl StepChooser {
             return StepRequest {
                 amplitude: Amplitude { from: 1.0, to: 0.0 },
                 turn_rate: 0.0,
+                facing: self.walk.facing,
+                ..*before
+            };
+        }
+        if stops && (gathers || sidles(*velocity_mps) && !early) {
+            // The foot comes to the other one, or is too far out to come down sooner. The next step stops.
+            return StepRequest {
+                turn_rate: controls.turn_rate,
                 ..*before
             };
         }

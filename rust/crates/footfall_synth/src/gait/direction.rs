@@ -28,6 +28,11 @@ pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
     2.0 * direction.x * direction.y * MAX_PELVIS_TURN * share
 }
 
+/// Returns true for a velocity to the side rather than forwards or backwards.
+pub(super) fn sidles(velocity_mps: Vec2) -> bool {
+    velocity_mps.x.abs() > velocity_mps.y.abs()
+}
+
 /// Length of a step of this velocity on legs of this length, as a multiple of the longest possible step.
 pub(crate) fn overstep(velocity_mps: Vec2, step_secs: f32, leg: f32) -> f32 {
     let step = seen_from_pelvis(velocity_mps) * step_secs / leg;

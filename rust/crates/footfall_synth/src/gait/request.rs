@@ -1,10 +1,11 @@
 //! Controls of one step, and the request that a gait makes of them.
 
+use super::direction::sidles;
 use super::pace::Pace;
 use super::stand::Amplitude;
 use crate::controls::{Controls, GaitChoice};
 use crate::detail::Detail;
-use footfall_core::StepPosition;
+use footfall_core::{Side, StepPosition};
 use glam::Vec2;
 
 /// Controls within the limits of one step.
@@ -92,6 +93,8 @@ pub(crate) struct Passed {
     pub(crate) whole_frames: f64,
     /// Share of it that has passed.
     pub(crate) share: f64,
+    /// Foot that stands.
+    pub(crate) standing: Side,
     /// Share of the time in which a foot bears that has passed.
     pub(crate) borne: f32,
     /// Velocity to the left and forwards that the walker has reached by then, m/s.
@@ -103,9 +106,19 @@ pub(crate) struct Passed {
 }
 
 impl Passed {
-    /// Returns the hardest braking of hips that come to rest above the standing foot in this time, along a cubic, m/s².
-    pub(crate) fn braking_mps2(&self, secs: f32) -> f32 {
-        let (pace, room) = (self.hips_mps / secs, 6.0 * self.room_m / (secs * secs));
+    /// Returns true in a step to the side, at this velocity, in which the trailing foot comes to the leading one.
+    pub(crate) fn gathers(&self, velocity_mps: Vec2) -> bool {
+        let towards = match self.standing {
+            Side::Left => velocity_mps.x,
+            Side::Right => -velocity_mps.x,
+        };
+        towards > 0.0 && sidles(velocity_mps)
+    }
+
+    /// Returns the hardest braking of hips that come to rest `beside_m` metres before they are above the standing foot in this time, along a cubic, m/s².
+    pub(crate) fn braking_mps2(&self, secs: f32, beside_m: f32) -> f32 {
+        let room_m = self.room_m - beside_m;
+        let (pace, room) = (self.hips_mps / secs, 6.0 * room_m / (secs * secs));
         (4.0 * pace - room).max(room - 2.0 * pace)
     }
 }

@@ -34,7 +34,8 @@ impl Planter {
             } else {
                 strafe.spread(generated, leg_length)
             };
-            self.state.strafe = strafe;
+            // Who rests is not turned.
+            self.state.strafe = if timing.rests { Strafe::NONE } else { strafe };
             let turner = Turner {
                 feet: &self.feet,
                 leg_length,

@@ -124,6 +124,16 @@ impl PlantedStep {
         } else {
             Strafe::of(placing.velocity_mps, step_secs, &self.skeleton)
         };
+        let (strafe, end) = if timing.rests {
+            // The pelvis faces ahead in the end, and no leg is turned.
+            let ahead = Strafe {
+                turn: 0.0,
+                ..strafe
+            };
+            (ahead, Strafe::NONE)
+        } else {
+            (strafe, strafe)
+        };
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let generated = &mut generated[..=timing.frames];
         let frames = &mut self.frames[..=timing.frames];
@@ -150,7 +160,7 @@ impl PlantedStep {
             let between = |from: f32, to: f32| share * (to - from) + f32x8::splat(from);
             Stride {
                 scale: between(stride_before, stride),
-                upright: between(before.uprightness(), strafe.uprightness()),
+                upright: between(before.uprightness(), end.uprightness()),
             }
         });
         let [_, facing] = placing.facing;

@@ -17,6 +17,7 @@ mod running;
 mod setting_out;
 mod slow;
 mod standing;
+mod stopping;
 mod strafing;
 mod turning;
 mod turning_back;

@@ -19,7 +19,7 @@ pub(crate) fn going(direction_rad: f32, speed_mps: f32) -> Controls {
 }
 
 /// Every direction but straight ahead.
-fn directions() -> impl Iterator<Item = f32> {
+pub(crate) fn directions() -> impl Iterator<Item = f32> {
     (1..8).map(|eighth| eighth as f32 * FRAC_PI_4)
 }
 

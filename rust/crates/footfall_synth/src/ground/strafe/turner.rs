@@ -59,6 +59,15 @@ pub(crate) struct Turner<'a> {
     pub(crate) strides: [f32; 2],
 }
 
+/// A step's approach to standing, in which no leg is turned.
+#[derive(Clone, Copy, Default)]
+struct Rest {
+    /// Share of it: 0 inside a walk, 1 at the end of a step that ends standing.
+    share: f32,
+    /// Distance of the middle of each sole ahead of the hips in standing, metres.
+    ahead: [f32; 2],
+}
+
 /// State of a swinging foot.
 #[derive(Clone, Copy)]
 struct Swing {
@@ -88,24 +97,30 @@ impl Turner<'_> {
         let swing_frames = (last - timing.terminal) as f32;
         let landing = generated[last].legs[trailing.index()].free_pitch;
         let lift = Lift::of(self, generated, timing);
+        let end = self.rest(&generated[last], timing);
         let [landed, standing] = [(trailing, LANDING_EXTENSION), (leading, STANDING_EXTENSION)]
             .map(|(side, stretch)| {
                 let leg = &generated[last].legs[side.index()];
                 let flat = leg.flat_ankle(&self.feet[side.index()]);
-                let turned = self.turn_place(now, side, flat);
-                self.rise(now, leg.hip, [flat, turned], stretch)
+                let turned = self.turn_place((now, &end), side, flat);
+                self.rise((now, &end), leg.hip, [flat, turned], stretch)
             });
         let meeting = landed - standing;
         for (index, frame) in frames.iter_mut().enumerate().take(last + 1) {
             let part = index as f32 / last as f32;
             let strafe = before.between(now, self.strides, part);
+            let rest = Rest {
+                share: smooth_step(part) * end.share,
+                ..end
+            };
             let mirrored = (timing.terminal + last).saturating_sub(index).min(last);
             let mirrored = generated[mirrored].legs[trailing.index()].free_pitch;
             let legs = &mut generated[index].legs;
             let standing = &mut legs[leading.index()];
             let flat = standing.flat_ankle(&self.feet[leading.index()]);
-            let turned = self.turn_place(&strafe, leading, flat);
-            let rise = self.rise(&strafe, standing.hip, [flat, turned], STANDING_EXTENSION);
+            let turned = self.turn_place((&strafe, &rest), leading, flat);
+            let extension = STANDING_EXTENSION;
+            let rise = self.rise((&strafe, &rest), standing.hip, [flat, turned], extension);
             let pitch = standing_pitch(&strafe, standing.pitch);
             let roll = self.feet[leading.index()].roll(pitch);
             standing.put(turned - rise * Vec3::Y + roll, pitch, pitch);
@@ -131,7 +146,7 @@ impl Turner<'_> {
                 strafe
             };
             self.turn_trailing(
-                &redirected,
+                (&redirected, &rest),
                 trailing,
                 &mut legs[trailing.index()],
                 rise,
@@ -149,7 +164,7 @@ impl Turner<'_> {
     /// The flat foot's ankle is given as generated and as turned.
     fn rise(
         &self,
-        strafe: &Strafe,
+        (strafe, rest): (&Strafe, &Rest),
         hip: Vec3,
         [flat, turned]: [Vec3; 2],
         [least, most]: [f32; 2],
@@ -165,7 +180,8 @@ impl Turner<'_> {
             self.lowest_height(strafe) + BOB_SHARE * self.leg_length,
             BOB_SOFTNESS_M,
         );
-        strafe.reach[0].abs().min(1.0) * (turned.y - (hip.y - down))
+        let aside = strafe.reach[0].abs().min(1.0) * (1.0 - rest.share);
+        aside * (turned.y - (hip.y - down))
     }
 
     /// Returns the height of a hip above the ankle at which a leg reaches its place farthest to the side.
@@ -179,7 +195,7 @@ impl Turner<'_> {
     /// Turns the other leg, below risen hips; `swing` is its state while its foot is in the air.
     fn turn_trailing(
         &self,
-        strafe: &Strafe,
+        (strafe, rest): (&Strafe, &Rest),
         side: Side,
         leg: &mut GeneratedLeg,
         rise: f32,
@@ -187,7 +203,7 @@ impl Turner<'_> {
     ) {
         let foot = &self.feet[side.index()];
         let standing = standing_pitch(strafe, leg.pitch);
-        let place = |offset: Vec3| self.turn_place(strafe, side, leg.ankle - offset);
+        let place = |offset: Vec3| self.turn_place((strafe, rest), side, leg.ankle - offset);
         let mut ankle = place(foot.roll(leg.pitch)) + foot.roll(standing);
         let mut pitch = standing;
         if let Some(swing) = swing {
@@ -206,20 +222,37 @@ impl Turner<'_> {
         leg.put(ankle - rise * Vec3::Y, pitch, standing);
     }
 
+    /// Returns the standing in which a step ends, whose last frame is given: none of it inside a walk.
+    fn rest(&self, last: &GeneratedFrame, timing: &StepTiming) -> Rest {
+        if !timing.rests {
+            return Rest::default();
+        }
+        let ahead = Side::BOTH.map(|side| {
+            let foot = &self.feet[side.index()];
+            let flat = last.legs[side.index()].flat_ankle(foot);
+            (from_heading(self.own_facing) * flat + foot.sole_middle()).z
+        });
+        Rest { share: 1.0, ahead }
+    }
+
     /// Returns the target of a flat foot's ankle, relative to the hips. Its excursion is that of the middle of the sole, which is about as far
-    /// ahead of the hips as behind them in walks forwards and to the side; backwards, that of a point nearer to the ankle.
-    fn turn_place(&self, strafe: &Strafe, side: Side, ankle: Vec3) -> Vec3 {
-        let share = 1.0 + strafe.backwardness() * (BACKWARD_MIDDLE - 1.0);
+    /// ahead of the hips as behind them in walks forwards and to the side; backwards, that of a point nearer to the ankle. Who comes to rest stands as after a walk forwards.
+    fn turn_place(&self, (strafe, rest): (&Strafe, &Rest), side: Side, ankle: Vec3) -> Vec3 {
+        let walks = 1.0 - rest.share;
+        let share = 1.0 + walks * strafe.backwardness() * (BACKWARD_MIDDLE - 1.0);
         let middle = share * self.feet[side.index()].sole_middle();
         let place = from_heading(self.own_facing) * ankle + middle;
         let out = match side {
             Side::Left => strafe.widening,
             Side::Right => -strafe.widening,
         };
+        let stood = rest.share * rest.ahead[side.index()];
+        let excursion = place.z - stood;
+        let lead = walks * LEAD_SHARE * self.leg_length;
         let turned = Vec3::new(
-            place.x + out + strafe.reach[0] * (place.z - LEAD_SHARE * self.leg_length),
+            place.x + out + strafe.reach[0] * (excursion - lead),
             place.y,
-            strafe.reach[1] * place.z,
+            stood + strafe.reach[1] * excursion,
         );
         from_heading(-self.own_facing) * (turned - middle)
     }

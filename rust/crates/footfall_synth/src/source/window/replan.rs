@@ -50,6 +50,7 @@ impl StepWindow {
         let passed = Passed {
             whole_frames: timing.frames as f64 / (1.0 - self.passed()),
             share: f64::from(remainder.passed),
+            standing: timing.leading,
             borne: timing.take_off.map_or(remainder.passed, |last| {
                 (timing.borne + frame) as f32 / (timing.borne + last) as f32
             }),

@@ -1,0 +1,75 @@
+//! Stops from walks to the side and backwards.
+
+use crate::quick::assert_no_pop;
+use crate::strafing::{directions, going};
+use crate::world::{Frame, Kind, assert_planted_within, generator, run, walking};
+use core::f32::consts::FRAC_PI_2;
+use footfall_core::{Joint, Side, Skeleton};
+use footfall_synth::Controls;
+
+/// Walks at this velocity, stops after some frames, and walks off two seconds later; returns all frames, and the number of the one in which it is to stop.
+fn stopped(controls: &Controls, before: usize) -> (Vec<Frame>, usize) {
+    let skeleton = Skeleton::standard();
+    let mut walker = generator(Kind::Styled, 3);
+    let (mut frames, _) = run(&mut walker, &skeleton, controls, before);
+    frames.extend(run(&mut walker, &skeleton, &Controls::STAND, STOOD).0);
+    frames.extend(run(&mut walker, &skeleton, &walking(1.3), 60).0);
+    let when = format!("{controls:?}, {before}");
+    assert_planted_within(&skeleton, &frames, 0.05);
+    assert_no_pop(&frames[100..], [30.0, 50.0], &when);
+    (frames, before)
+}
+
+/// Frames from the request to stop until the walker sets out again.
+const STOOD: usize = 120;
+
+/// Stops requested at every moment of a sidestep.
+#[test]
+fn whoever_stops_sidestepping_brings_the_trailing_foot_to_the_other() {
+    for (sign, leading) in [(1.0, Side::Left), (-1.0, Side::Right)] {
+        for speed in [0.4, 0.8, 1.4] {
+            for moment in 0..18 {
+                let controls = going(sign * FRAC_PI_2, speed);
+                let (frames, asked) = stopped(&controls, 150 + 3 * moment);
+                let stood = &frames[asked - 1..asked + STOOD];
+                let outwards =
+                    |frame: &Frame, foot: Side| sign * frame.model.position(foot.foot()).x;
+                let farthest = stood
+                    .iter()
+                    .filter(|frame| frame.contact[leading.index()])
+                    .map(|frame| outwards(frame, leading))
+                    .fold(f32::MIN, f32::max);
+                let last = &stood[STOOD];
+                let back = farthest - outwards(last, leading);
+                assert!(back < 0.03, "{controls:?}, {asked}: {back} m back");
+                let apart = outwards(last, leading) - outwards(last, leading.other());
+                assert!(
+                    (0.1..0.3).contains(&apart),
+                    "{controls:?}, {asked}: {apart} m"
+                );
+            }
+        }
+    }
+}
+
+/// They came to rest as they had walked, on bent knees and over one leg, and leant to 17 cm ahead of their ankles in the end.
+#[test]
+fn whoever_stops_stands_upright_whichever_way_it_went() {
+    for direction in directions() {
+        for moment in 0..12 {
+            let controls = going(direction, 0.8);
+            let (frames, asked) = stopped(&controls, 150 + 4 * moment);
+            // Later it sways.
+            let last = &frames[asked + 65];
+            let [hips, left, right] = [Joint::Hips, Joint::LeftFoot, Joint::RightFoot]
+                .map(|joint| last.model.position(joint));
+            let off = hips - 0.5 * (left + right);
+            let when = format!("{direction}, {asked}: {off}");
+            assert!((0.86..0.9).contains(&off.y), "{when}");
+            assert!(
+                (-0.01..0.07).contains(&off.z) && off.x.abs() < 0.05,
+                "{when}"
+            );
+        }
+    }
+}
