@@ -214,6 +214,10 @@ impl GaitGenerator {
     pub(crate) fn end_step(&mut self, rested: &mut bool) {
         if self.comes_to_rest() && !*rested {
             self.report_plant(self.shape().timing.leading.other());
+            let ended = self.steps.source().planted().planter_state();
+            if let (Some(life), Some(ended)) = (&mut self.life, ended) {
+                life.come_to_rest(&ended);
+            }
         }
         *rested = false;
     }

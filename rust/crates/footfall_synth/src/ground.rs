@@ -44,6 +44,7 @@ pub(crate) use course::Course;
 pub(crate) use displacement::Displacement;
 pub(crate) use frame::PlantedFrame;
 pub(crate) use generated::{GeneratedFrame, Stride};
+pub(crate) use lean::HEAD_KEPT;
 pub(crate) use look::{Look, look};
 pub(crate) use placing::Placing;
 pub(crate) use planted_step::PlantedStep;

@@ -187,6 +187,9 @@ impl OwnWalk {
     pub(super) fn end_step(&mut self, rested: &mut bool) {
         if self.comes_to_rest() && !*rested {
             self.footstep = self.closing_footstep();
+            if let (Some(life), Some(ended)) = (&mut self.life, &self.ending.next.planter) {
+                life.come_to_rest(ended);
+            }
         }
         *rested = false;
     }

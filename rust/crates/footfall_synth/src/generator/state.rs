@@ -20,7 +20,7 @@ use crate::error::SynthError;
 use crate::gait::Amplitude;
 use crate::moves::Moves;
 use crate::source::Steps;
-use crate::standing::Moment;
+use crate::standing::{Moment, Righting};
 use climbing::Climbing;
 use feet::{Feet, Midway, Stance};
 use footfall_core::{GroundTransform, StepPosition};
@@ -204,6 +204,7 @@ impl GaitGenerator {
             planter.map_or(0.0, |feet| feet.lean.leg),
             self.moves.as_ref().and_then(Moves::coming),
             planter.as_ref().and_then(Midway::of),
+            moment.righting,
         );
         postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
     }
@@ -228,6 +229,7 @@ impl GaitGenerator {
         let leg: f32 = parts.next(since::LEGS_LEAN, 0.0)?;
         let coming: Option<[f32; 2]> = parts.next(since::PUSHES_BUILD_UP, None)?;
         let midway = Midway::read(&mut parts)?;
+        let righting: Righting = parts.next(since::BODIES_RIGHT, Righting::default())?;
         let sensible = [
             state.is_sensible(),
             alive.is_sensible(),
@@ -241,6 +243,7 @@ impl GaitGenerator {
                 .chain([leg])
                 .chain(midway.iter().flat_map(Midway::numbers))
                 .chain(coming.into_iter().flatten())
+                .chain(righting.numbers())
                 .map(f64::from)
                 .all(is_reasonable),
         ];
@@ -273,6 +276,7 @@ impl GaitGenerator {
                 secs: alive.secs,
                 share: alive.share,
                 speed: alive.speed,
+                righting,
             };
         }
         self.detail = detail_of(state.detail);

@@ -24,7 +24,7 @@ const LEGS: f32 = 1.3;
 
 /// Share of the angle of balance by which pelvis and trunk lean against a change of speed, and the share of that which the neck takes back.
 const AGAINST_CHANGE: f32 = 0.75;
-const HEAD_KEPT: f32 = 0.5;
+pub(crate) const HEAD_KEPT: f32 = 0.5;
 
 /// Lean of a landing leg for a loss of speed and for a gain, per lean of the pelvis beyond that from which it sets in; that; and the largest lean of the leg in an
 /// unhurried step and in a quick one, whose foot reaches farther ahead to land at the same place, radians.

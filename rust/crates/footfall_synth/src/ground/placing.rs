@@ -15,6 +15,9 @@ const CURVE_RADPS: [f32; 2] = [2.5, 3.5];
 /// Share of a change of speed against which a walker still leans as the step ends.
 const LEFT: f32 = 0.5;
 
+/// Share of it against which a walker still leans as it comes to rest. O3DE's actor, whose feet come to rest after a walk, leans back by 4° then, and by 1° half a second later.
+const LEFT_AT_REST: f32 = 0.35;
+
 /// Speed above which a step has a direction of its own, m/s.
 const DIRECTED_MPS: f32 = 0.1;
 
@@ -40,6 +43,8 @@ pub(crate) struct Placing<'a> {
     pub(crate) passed: f32,
     /// Displacement of the end of the step.
     pub(crate) displacement: Displacement,
+    /// True for a body that rights itself as it stands: it may come to rest leaning.
+    pub(crate) rights_itself: bool,
     /// True when legs keep their generated lengths; those of a switching model are not accurate enough.
     pub(crate) keeps_lengths: bool,
 }
@@ -51,8 +56,14 @@ impl Placing<'_> {
         let [from, to] = CURVE_RADPS;
         let curving = 1.0 - smooth_step((self.turn_rate.abs() - from) / (to - from));
         let change = (after.y - before.y) / secs;
-        // Who comes to rest is upright then, and who turns about a foot faces another way.
-        let left = LEFT * curving * self.amplitude_at(1.0) * change;
+        let walks = self.amplitude_at(1.0);
+        let at_rest = if self.rights_itself {
+            LEFT_AT_REST
+        } else {
+            0.0
+        };
+        // Who turns about a foot faces another way.
+        let left = (at_rest + walks * (LEFT - at_rest)) * curving * change;
         Pull {
             within: Vec2::new(0.0, change),
             after: Vec2::new(curving * after.y * self.turn_rate, left),

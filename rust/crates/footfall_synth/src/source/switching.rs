@@ -281,6 +281,7 @@ impl SwitchingSteps {
                 passed: 0.0,
                 displacement: Displacement::NONE,
                 direction: None,
+                rights_itself: false,
                 keeps_lengths: false,
             },
             &mut self.generated,

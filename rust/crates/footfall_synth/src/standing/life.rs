@@ -1,8 +1,10 @@
 //! Standing motion of one walker, which fades in at rest and out as a step begins.
 
 use super::carry::Carrier;
+use super::righting::Righting;
 use super::sway::{Stander, StandingTables, Sway};
 use crate::config::GeneratorConfig;
+use crate::ground::PlanterState;
 use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
 use footfall_model::FEATURE_COUNT;
@@ -27,6 +29,7 @@ pub(crate) struct Moment {
     /// Current share, 0 to 1, and its rate, 1/s.
     pub(crate) share: f32,
     pub(crate) speed: f32,
+    pub(crate) righting: Righting,
 }
 
 /// One walker's standing motion.
@@ -42,12 +45,14 @@ pub(crate) struct Life {
 impl Moment {
     /// Returns the progress after this time, of a walker that stands or walks throughout.
     pub(crate) fn after(self, secs: f32, stands: bool) -> Self {
+        let righting = self.righting.after(secs, stands);
         let nothing = Self {
             secs: self.secs,
+            righting,
             ..Self::default()
         };
-        if !stands && self == nothing {
-            return self;
+        if !stands && self.share == 0.0 && self.speed == 0.0 {
+            return nothing;
         }
         let (target, rate) = if stands {
             (1.0, RISE_RATE)
@@ -59,6 +64,7 @@ impl Moment {
             secs: self.secs + f64::from(secs),
             share: target + away,
             speed,
+            righting,
         };
         if !stands && later.share < LEAST_SHARE {
             // Time stops while walking.
@@ -115,7 +121,12 @@ impl Life {
 
     /// Returns true when nothing of it is visible.
     pub(crate) fn is_still(&self) -> bool {
-        self.amount <= 0.0 || self.moment.share <= 0.0
+        (self.amount <= 0.0 || self.moment.share <= 0.0) && self.moment.righting.is_none()
+    }
+
+    /// Begins to right a body that has just come to rest.
+    pub(crate) fn come_to_rest(&mut self, ended: &PlanterState) {
+        self.moment.righting = Righting::of(ended.lean.angle.y);
     }
 
     /// Returns the distance of the hips from the middle of the feet, as a share of the leg's length, positive to the left.
@@ -127,11 +138,12 @@ impl Life {
     /// Adds the standing motion of a moment to a still pose. `level` is the rotation under which the walker faces +Z.
     pub(crate) fn move_pose(&self, moment: &Moment, level: Quat, pose: &mut Pose) {
         let share = self.amount * moment.share;
-        if share.abs() <= 0.0 {
+        if share.abs() <= 0.0 && moment.righting.is_none() {
             return;
         }
         let sway = self.tables.at(&self.stander, moment.secs);
-        let sway: Sway = sway.map(|value| share * value);
+        let mut sway: Sway = sway.map(|value| share * value);
+        moment.righting.add(&mut sway);
         self.carrier.carry(&sway, moment.share, level, pose);
     }
 }

@@ -3,7 +3,7 @@
 use serde::de::DeserializeOwned;
 
 /// Version of the layout that this build writes, and the oldest that it reads.
-pub(super) const VERSION: u8 = since::HEADS_TURN;
+pub(super) const VERSION: u8 = since::BODIES_RIGHT;
 pub(super) const OLDEST: u8 = 4;
 
 /// Versions from which states have a part.
@@ -22,6 +22,8 @@ pub(super) mod since {
     pub(in super::super) const PUSHES_BUILD_UP: u8 = 13;
     pub(in super::super) const FEET_SPREAD: u8 = 14;
     pub(in super::super) const HEADS_TURN: u8 = 15;
+    /// Bodies that come to rest leaning.
+    pub(in super::super) const BODIES_RIGHT: u8 = 16;
 }
 
 /// Parts that follow a [`State`](super::State), of which earlier versions have the first ones.

@@ -2,6 +2,7 @@
 
 use super::StepWindow;
 use super::origin::Origin;
+use crate::detail::Detail;
 use crate::gait::{Gait, Manner};
 use crate::ground::{Displacement, Placing};
 use crate::plan::{Planner, Remainder, StepPlan, TIE, WINDOW};
@@ -178,6 +179,8 @@ pub(super) fn placing<'a>(
         } else {
             Displacement::NONE
         },
+        // What far walkers of a crowd show as they stand is recorded in the coarsest detail, and repeats.
+        rights_itself: now.model.standing.is_some() && plans[step].shape.detail != Detail::Quarter,
         keeps_lengths: true,
     }
 }
