@@ -144,7 +144,9 @@ impl Life {
         let sway = self.tables.at(&self.stander, moment.secs);
         let mut sway: Sway = sway.map(|value| share * value);
         moment.righting.add(&mut sway);
-        self.carrier.carry(&sway, moment.share, level, pose);
+        // A body without standing motion stays as low as it came to rest.
+        let upright = if self.amount > 0.0 { moment.share } else { 0.0 };
+        self.carrier.carry(&sway, upright, level, pose);
     }
 }
 
