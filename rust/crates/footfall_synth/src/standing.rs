@@ -3,6 +3,7 @@
 //! [`sway`] computes the body's offset from its posture, [`righting`] that of a body that stopped, [`carry`] applies them over planted feet, and [`life`] fades them in and out.
 
 mod carry;
+mod fade;
 mod life;
 mod noise;
 mod righting;

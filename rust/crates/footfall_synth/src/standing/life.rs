@@ -1,19 +1,21 @@
 //! Standing motion of one walker, which fades in at rest and out as a step begins.
 
 use super::carry::Carrier;
+use super::fade::{Rates, faded};
 use super::righting::Righting;
 use super::sway::{Stander, StandingTables, Sway};
 use crate::config::GeneratorConfig;
 use crate::ground::PlanterState;
-use footfall_core::ease::settled;
 use footfall_core::{Pose, Skeleton};
 use footfall_model::FEATURE_COUNT;
 use glam::Quat;
 use std::sync::Arc;
 
-/// Rates at which it fades in and out, those of a critically damped spring, 1/s.
-const RISE_RATE: f32 = 2.4;
-const FALL_RATE: f32 = 9.0;
+/// Rates at which it fades in and out.
+const RATES: Rates = Rates {
+    rise: 2.4,
+    fall: 9.0,
+};
 
 /// Share that counts as none: a tenth of a millimetre.
 const LEAST_SHARE: f32 = 2e-3;
@@ -54,15 +56,10 @@ impl Moment {
         if !stands && self.share == 0.0 && self.speed == 0.0 {
             return nothing;
         }
-        let (target, rate) = if stands {
-            (1.0, RISE_RATE)
-        } else {
-            (0.0, FALL_RATE)
-        };
-        let (away, speed) = settled(self.share - target, self.speed, rate, secs);
+        let [share, speed] = faded([self.share, self.speed], RATES, stands, secs);
         let later = Self {
             secs: self.secs + f64::from(secs),
-            share: target + away,
+            share,
             speed,
             righting,
         };
@@ -172,7 +169,7 @@ mod tests {
         }
         assert_eq!((moment.share, moment.speed), (0.0, 0.0));
         // Of 2 cm this is at most 1.7 m/s².
-        assert!(fastest < FALL_RATE * FALL_RATE + 5.0, "{fastest}");
+        assert!(fastest < RATES.fall * RATES.fall + 5.0, "{fastest}");
         let halves = Moment::default().after(0.3, true).after(0.3, true);
         let whole = Moment::default().after(0.6, true);
         assert!((halves.share - whole.share).abs() < 1e-5);

@@ -2,16 +2,18 @@
 //!
 //! People's feet come to rest before their trunks, which are upright half a second later.
 
+use super::fade::{Rates, faded};
 use super::sway::Sway;
 use crate::ground::HEAD_KEPT;
 use footfall_core::Joint;
-use footfall_core::ease::settled;
 use footfall_model::layout::feature_offset;
 use serde::{Deserialize, Serialize};
 
-/// Rates at which a standing body rights itself, and at which that fades as it walks, those of a critically damped spring, 1/s.
-const RIGHTING_RATE: f32 = 6.0;
-const FALL_RATE: f32 = 9.0;
+/// Rates at which a standing body rights itself, and at which that fades as it walks.
+const RATES: Rates = Rates {
+    rise: 6.0,
+    fall: 9.0,
+};
 
 /// Share that counts as none: a fifth of a millimetre at the head of a body that leant by 4°.
 const LEAST_SHARE: f32 = 5e-3;
@@ -40,16 +42,11 @@ impl Righting {
         if self == Self::default() {
             return self;
         }
-        let (target, rate) = if stands {
-            (1.0, RIGHTING_RATE)
-        } else {
-            (0.0, FALL_RATE)
-        };
-        let (away, speed) = settled(self.share - target, self.speed, rate, secs);
-        let (share, speed) = match away.abs() < LEAST_SHARE {
-            true if stands => (target, 0.0),
-            true => return Self::default(),
-            false => (target + away, speed),
+        let [share, speed] = faded([self.share, self.speed], RATES, stands, secs);
+        let [share, speed] = match (stands, share) {
+            (true, share) if share > 1.0 - LEAST_SHARE => [1.0, 0.0],
+            (false, share) if share < LEAST_SHARE => return Self::default(),
+            _ => [share, speed],
         };
         Self {
             share,
