@@ -157,8 +157,15 @@ impl GaitGenerator {
                     )
                 }
             };
+        let moment = self
+            .life
+            .as_ref()
+            .map(|life| life.moment)
+            .unwrap_or_default();
+        // Few walkers need this part, and without it earlier builds read the state.
+        let righting = Some(moment.righting).filter(|righting| *righting != Righting::default());
         let state = State {
-            version: VERSION,
+            version: righting.map_or(since::HEADS_TURN, |_| VERSION),
             model,
             seed: self.config.seed,
             phase: self.config.phase,
@@ -182,11 +189,6 @@ impl GaitGenerator {
                 Steps::Switching(steps) => Source::of_switching(steps),
             },
         };
-        let moment = self
-            .life
-            .as_ref()
-            .map(|life| life.moment)
-            .unwrap_or_default();
         let alive = Alive {
             secs: moment.secs,
             share: moment.share,
@@ -204,9 +206,12 @@ impl GaitGenerator {
             planter.map_or(0.0, |feet| feet.lean.leg),
             self.moves.as_ref().and_then(Moves::coming),
             planter.as_ref().and_then(Midway::of),
-            moment.righting,
         );
-        postcard::to_stdvec(&(state, alive, more)).unwrap_or_default()
+        let bytes = postcard::to_stdvec(&(state, alive, more)).unwrap_or_default();
+        match righting {
+            Some(righting) => postcard::to_extend(&righting, bytes).unwrap_or_default(),
+            None => bytes,
+        }
     }
 
     /// Restores a [`state`](Self::state) of a walker with the same model, styles and body; the seed becomes the state's.

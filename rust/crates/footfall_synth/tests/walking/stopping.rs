@@ -129,6 +129,11 @@ fn a_body_that_rights_itself_goes_on_from_a_saved_state_bit_for_bit() {
         let (mut walker, _) = rested(5, 1.0);
         run(&mut walker, &Skeleton::standard(), &Controls::STAND, stood);
         // It walks off before it is upright, too.
+        assert_eq!(
+            walker.state()[0],
+            16,
+            "the format with bodies that right themselves"
+        );
         let goes = |frame: usize| {
             if frame < 20 {
                 Controls::STAND
