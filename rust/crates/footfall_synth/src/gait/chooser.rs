@@ -1,6 +1,6 @@
 //! Choice of the next step: its gait, velocity and pace by the controls.
 
-use super::direction::{pelvis_turn, sidles};
+use super::direction::{is_forwards, pelvis_turn, sidles};
 use super::kinds::{FASTEST_WALK_MPS, Gait, STOPPABLE_MPS};
 use super::pace::{Pace, PaceTable};
 use super::request::{Manner, Passed, StepControls, StepRequest};
@@ -54,8 +54,6 @@ const BRISK_MPS: [f32; 2] = [0.7, 1.1];
 /// middle of the body, as a share of the leg, by which those hips stop before they are above it.
 const HARDEST_GATHERING_MPS2: f32 = 18.0;
 const BESIDE_SHARE: f32 = 0.1;
-/// Largest sideways share of the way forwards with which a velocity counts as forwards: such a step can still end the walk.
-const STRAIGHT: f32 = 0.2;
 
 /// Gaits of one body, each with its paces.
 #[derive(Clone, Debug)]
@@ -348,11 +346,6 @@ impl StepChooser {
             ..self.walking_request(detail)
         }
     }
-}
-
-/// Returns true for a velocity forwards, or nearly so ([`STRAIGHT`]).
-fn is_forwards(velocity_mps: Vec2) -> bool {
-    velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y
 }
 
 /// Returns the place of a value between two others, from 0 to 1, smoothed.

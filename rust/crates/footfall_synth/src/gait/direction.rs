@@ -19,6 +19,9 @@ const MAX_BACK_STEP: [f32; 2] = [0.48, 0.74];
 /// Those speeds, m/s.
 const SLOW_QUICK_MPS: [f32; 2] = [0.3, 1.4];
 
+/// Largest sideways share of the way forwards with which a velocity counts as forwards: such a step can still end the walk.
+const STRAIGHT: f32 = 0.2;
+
 /// Turn of the pelvis towards a velocity to the left and forwards, m/s; radians, positive to the left.
 ///
 /// Zero along the axes: the pelvis faces forwards in steps forwards, sideways and backwards.
@@ -26,6 +29,11 @@ pub(crate) fn pelvis_turn(velocity_mps: Vec2) -> f32 {
     let direction = velocity_mps.normalize_or_zero();
     let share = smooth_step(velocity_mps.length() / FULL_TURN_SPEED_MPS);
     2.0 * direction.x * direction.y * MAX_PELVIS_TURN * share
+}
+
+/// Returns true for a velocity forwards, or nearly so ([`STRAIGHT`]).
+pub(super) fn is_forwards(velocity_mps: Vec2) -> bool {
+    velocity_mps.y > 0.0 && velocity_mps.x.abs() < STRAIGHT * velocity_mps.y
 }
 
 /// Returns true for a velocity to the side rather than forwards or backwards.

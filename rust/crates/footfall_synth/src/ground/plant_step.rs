@@ -34,8 +34,7 @@ impl Planter {
             } else {
                 strafe.spread(generated, leg_length)
             };
-            // Who rests is not turned.
-            self.state.strafe = if timing.rests { Strafe::NONE } else { strafe };
+            self.state.strafe = strafe.at_end(timing.rests);
             let turner = Turner {
                 feet: &self.feet,
                 leg_length,

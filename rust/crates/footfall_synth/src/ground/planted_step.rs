@@ -124,15 +124,11 @@ impl PlantedStep {
         } else {
             Strafe::of(placing.velocity_mps, step_secs, &self.skeleton)
         };
-        let (strafe, end) = if timing.rests {
-            // The pelvis faces ahead in the end, and no leg is turned.
-            let ahead = Strafe {
-                turn: 0.0,
-                ..strafe
-            };
-            (ahead, Strafe::NONE)
-        } else {
-            (strafe, strafe)
+        let end = strafe.at_end(timing.rests);
+        // The legs of a step that ends standing keep its direction, under a pelvis that faces ahead in the end.
+        let strafe = Strafe {
+            turn: end.turn,
+            ..strafe
         };
         let as_it_is = shape.amplitude == Amplitude::WALK && [before, strafe] == [Strafe::NONE; 2];
         let generated = &mut generated[..=timing.frames];

@@ -108,6 +108,11 @@ impl Strafe {
         self
     }
 
+    /// Returns the turn with which a step of this turn ends: none where it ends standing.
+    pub(crate) const fn at_end(self, rests: bool) -> Self {
+        if rests { Self::NONE } else { self }
+    }
+
     /// Straightness of landing and standing legs, from 0 to 1: as people's in a walk forwards, less in steps to the side and backwards.
     pub(crate) fn uprightness(&self) -> f32 {
         self.forwardness.max(0.0).powi(2)

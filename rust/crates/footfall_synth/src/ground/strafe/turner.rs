@@ -119,8 +119,8 @@ impl Turner<'_> {
             let standing = &mut legs[leading.index()];
             let flat = standing.flat_ankle(&self.feet[leading.index()]);
             let turned = self.turn_place((&strafe, &rest), leading, flat);
-            let extension = STANDING_EXTENSION;
-            let rise = self.rise((&strafe, &rest), standing.hip, [flat, turned], extension);
+            let places = [flat, turned];
+            let rise = self.rise((&strafe, &rest), standing.hip, places, STANDING_EXTENSION);
             let pitch = standing_pitch(&strafe, standing.pitch);
             let roll = self.feet[leading.index()].roll(pitch);
             standing.put(turned - rise * Vec3::Y + roll, pitch, pitch);
