@@ -1,6 +1,6 @@
 //! Two corpora on one command line, each with conditions of its own.
 
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use anyhow::{Context as _, Result};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use footfall_motion::corpus::{Corpus, Where};
@@ -17,8 +17,8 @@ pub(crate) struct CorpusChoice {
 
 impl CorpusChoice {
     /// Reads the recordings.
-    pub(crate) fn read(&self, knees: KneesArgs) -> Result<Corpus> {
-        knees.read_corpus(&self.index, &self.conditions)
+    pub(crate) fn read(&self, fit: FitArgs) -> Result<Corpus> {
+        fit.read_corpus(&self.index, &self.conditions)
     }
 }
 
@@ -120,12 +120,12 @@ pub(crate) struct ReadPair {
 
 impl CorpusPair {
     /// Reads both.
-    pub(crate) fn read(&self, knees: KneesArgs) -> Result<ReadPair> {
-        let real = self.real.read(knees).context("the real recordings")?;
+    pub(crate) fn read(&self, fit: FitArgs) -> Result<ReadPair> {
+        let real = self.real.read(fit).context("the real recordings")?;
         let synthesised = self
             .synthesised
             .as_ref()
-            .map(|choice| choice.read(knees))
+            .map(|choice| choice.read(fit))
             .transpose();
         Ok(ReadPair {
             real,

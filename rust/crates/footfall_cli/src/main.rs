@@ -2,7 +2,7 @@
 
 mod commands;
 mod corpus_pair;
-mod hip_facts;
+mod fit_facts;
 mod motion_input;
 mod output;
 mod sheet;

@@ -1,13 +1,13 @@
 //! A motion file as every command needs it: read, placed on the canonical body, with its contacts.
 
-use crate::hip_facts::note_people;
+use crate::fit_facts::note_people;
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_motion::bvh::BvhFile;
 use footfall_motion::corpus::{Corpus, Where};
 use footfall_motion::recording::{Recording, read_motion};
 use footfall_motion::retarget::{
-    HipCentres, JointMap, RetargetOptions, Retargeted, parse_joint_map,
+    JointMap, RetargetOptions, Retargeted, SkeletonFit, parse_joint_map,
 };
 use footfall_motion::steps::Step;
 use std::fs;
@@ -20,16 +20,16 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "NAMES.toml")]
     map: Option<PathBuf>,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
 }
 
-/// Treatment of hip joints that a recording misplaces.
+/// Treatment of a skeleton that fits its person badly.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
-pub(crate) struct KneesArgs {
-    /// Leave hip joints where the recording has them
+pub(crate) struct FitArgs {
+    /// Leave hip joints and head where the recording has them
     ///
-    /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not. Where a person's
-    /// walking shows it, the joints are moved and the legs solved anew, unless this option is given.
+    /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not, and tilt necks and
+    /// faces. Where a person's walking shows it, joints are moved, legs solved anew and heads turned, unless this option is given.
     #[arg(long)]
     pub(crate) as_recorded: bool,
     /// Accepted for command lines of older versions, which moved hip joints on request only.
@@ -37,25 +37,25 @@ pub(crate) struct KneesArgs {
     correct_hips: bool,
 }
 
-impl KneesArgs {
-    /// Source of the hip joints' places.
-    pub(crate) const fn hip_centres(self) -> HipCentres {
+impl FitArgs {
+    /// Source of the hip joints' places and of the head's carriage.
+    pub(crate) const fn skeleton(self) -> SkeletonFit {
         if self.as_recorded {
-            HipCentres::AsRecorded
+            SkeletonFit::AsRecorded
         } else {
-            HipCentres::FromRecording
+            SkeletonFit::FromRecording
         }
     }
 
     /// Options under which a recording is read.
     pub(crate) fn options(self) -> RetargetOptions {
         RetargetOptions {
-            hip_centres: self.hip_centres(),
+            fit: self.skeleton(),
             ..RetargetOptions::default()
         }
     }
 
-    /// Reads the chosen recordings of an index, and says whose hip joints moved.
+    /// Reads the chosen recordings of an index, and says whose skeletons were put right.
     pub(crate) fn read_corpus(self, index: &Path, conditions: &[Where]) -> Result<Corpus> {
         let corpus = Corpus::read_with(index, conditions, &self.options())?;
         note_people(&corpus.report.people);
@@ -78,13 +78,13 @@ pub(crate) struct CorpusArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     pub(crate) conditions: Vec<Where>,
     #[command(flatten)]
-    pub(crate) knees: KneesArgs,
+    pub(crate) fit: FitArgs,
 }
 
 impl CorpusArgs {
-    /// Reads the chosen recordings, and says whose hip joints moved.
+    /// Reads the chosen recordings, and says whose skeletons were put right.
     pub(crate) fn read(&self) -> Result<Corpus> {
-        self.knees.read_corpus(&self.index, &self.conditions)
+        self.fit.read_corpus(&self.index, &self.conditions)
     }
 }
 
@@ -94,7 +94,7 @@ impl MapArgs {
         Ok(RetargetOptions {
             map: self.read_map()?,
             frame_rate_hz,
-            hip_centres: self.knees.hip_centres(),
+            fit: self.fit.skeleton(),
         })
     }
 

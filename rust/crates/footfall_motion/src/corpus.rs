@@ -8,7 +8,7 @@ pub use people::{Person, PersonFile, find_people, options_of};
 pub use selection::{Where, read_index};
 
 use crate::recording::Recording;
-use crate::retarget::{HipCentres, RetargetOptions, Retargeted};
+use crate::retarget::{RetargetOptions, Retargeted, SkeletonFit};
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -139,13 +139,13 @@ impl Corpus {
         let rows = read_index(index)?;
         let chosen = selection::select(index, rows.clone(), conditions)?;
         let selected = chosen.len();
-        let (people, mut motions) = match options.hip_centres {
-            HipCentres::FromRecording => {
+        let (people, mut motions) = match options.fit {
+            SkeletonFit::FromRecording => {
                 let files = people::rows_of_same_people(&rows, &chosen);
                 let paths: BTreeSet<&Path> = chosen.iter().map(|row| row.path.as_path()).collect();
                 people::read_people(&files, options, |path| paths.contains(path))
             }
-            HipCentres::AsRecorded | HipCentres::Known(_) => Default::default(),
+            SkeletonFit::AsRecorded | SkeletonFit::Known(_) => Default::default(),
         };
         let chosen: Vec<_> = chosen
             .into_iter()
@@ -198,11 +198,9 @@ fn read_clip(
         line: row.line,
         reason,
     };
-    let recording = match (motion, options.hip_centres) {
-        (Some(mut motion), HipCentres::Known(finding))
-            if finding.verdict.correction().is_none() =>
-        {
-            motion.report.hip_centres = finding;
+    let recording = match (motion, options.fit) {
+        (Some(mut motion), SkeletonFit::Known(finding)) if finding.is_as_recorded() => {
+            motion.report.fit = finding;
             Recording::of_file(&row.path, options, motion)
         }
         _ => Recording::read(&row.path, options),

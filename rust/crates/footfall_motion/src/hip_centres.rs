@@ -18,6 +18,7 @@ mod summary;
 
 pub use reference::{FARTHEST, PHASES, STRIDE_SHARES};
 
+use crate::head_carriage::HeadCarriage;
 use footfall_core::Side;
 use glam::{Vec2, Vec3};
 use reference::Gait;
@@ -105,7 +106,7 @@ impl Origin {
     }
 }
 
-/// A skeleton's legs and stances, as a recording shows them.
+/// A skeleton's legs, stances and carriage of the head, as a recording shows them.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct WalkingEvidence {
     /// Thigh and shank of the left and of the right leg, in leg lengths.
@@ -118,6 +119,8 @@ pub struct WalkingEvidence {
     pub origin: Origin,
     /// Stances of plain walking straight ahead.
     pub stances: Vec<Stance>,
+    /// Mean carriage of the head over each stride of plain walking.
+    pub heads: Vec<HeadCarriage>,
 }
 
 impl WalkingEvidence {

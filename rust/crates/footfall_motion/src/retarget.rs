@@ -19,7 +19,9 @@ pub use joint_map::parse_joint_map;
 pub use report::{RetargetError, RetargetReport};
 
 use crate::bvh::BvhFile;
-use crate::hip_centres::{HipFinding, HipVerdict, Origin, WalkingEvidence, find_hip_centres};
+use crate::head_carriage::HeadCarriage;
+use crate::hip_centres::{HipVerdict, Origin, WalkingEvidence};
+use crate::skeleton_fit::{FitFinding, Manner, find_fit};
 use footfall_core::rotation::{from_heading, heading, shortest_arc};
 use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, Skeleton};
 use glam::{Quat, Vec3};
@@ -33,21 +35,21 @@ pub struct RetargetOptions {
     pub map: Option<JointMap>,
     /// Rate of the clip, frames per second; the file's own when absent.
     pub frame_rate_hz: Option<f64>,
-    /// Source of the hip joints' places.
-    pub hip_centres: HipCentres,
+    /// Treatment of a skeleton that fits the person badly.
+    pub fit: SkeletonFit,
 }
 
-/// Source of the hip joints' places.
+/// Source of the hip joints' places and of the head's carriage.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum HipCentres {
-    /// The walking of the recording itself, where it shows that the file misplaces them; the file where it does not. See
-    /// [`hip_centres`](crate::hip_centres).
+pub enum SkeletonFit {
+    /// The walking of the recording itself, where it shows that the file has them wrong; the file where it does not. See
+    /// [`hip_centres`](crate::hip_centres) and [`head_carriage`](crate::head_carriage).
     #[default]
     FromRecording,
     /// The file.
     AsRecorded,
     /// A finding from several recordings of the person.
-    Known(HipFinding),
+    Known(FitFinding),
 }
 
 /// A clip on the canonical body, and how it came about.
@@ -76,7 +78,7 @@ impl Retargeted {
                 in_place: false,
                 cycle_frames: None,
                 repeats: 1,
-                hip_centres: HipFinding::without_evidence(HipVerdict::OwnBody),
+                fit: FitFinding::without_evidence(HipVerdict::OwnBody),
             },
         }
     }
@@ -102,16 +104,16 @@ pub(crate) fn retarget_with_way(
 ) -> Result<Retargeted, RetargetError> {
     check_rate(options)?;
     let placed = Placed::new(file, options.map.as_ref(), way)?;
-    let hip_centres = match options.hip_centres {
-        HipCentres::FromRecording => find_hip_centres(&[&placed.evidence()]),
-        HipCentres::AsRecorded => HipFinding::without_evidence(HipVerdict::AsRecorded),
-        HipCentres::Known(finding) => finding,
+    let fit = match options.fit {
+        SkeletonFit::FromRecording => find_fit(&[&placed.evidence()], Manner::Unlabelled),
+        SkeletonFit::AsRecorded => FitFinding::without_evidence(HipVerdict::AsRecorded),
+        SkeletonFit::Known(finding) => finding,
     };
-    placed.with_hip_centres(hip_centres, options.frame_rate_hz)
+    placed.corrected(fit, options.frame_rate_hz)
 }
 
-/// As [`retarget_with_way`], with the joints as the file has them, and the file's evidence about its skeleton's legs: of all files of a
-/// person, [`find_hip_centres`] decides whether the joints are corrected.
+/// As [`retarget_with_way`], with the joints as the file has them, and the file's evidence about its skeleton: of all files of a
+/// person, [`find_fit`] decides whether the joints are corrected.
 pub(crate) fn retarget_as_recorded(
     file: &BvhFile,
     options: &RetargetOptions,
@@ -120,8 +122,8 @@ pub(crate) fn retarget_as_recorded(
     check_rate(options)?;
     let placed = Placed::new(file, options.map.as_ref(), way)?;
     let evidence = placed.evidence();
-    let finding = HipFinding::without_evidence(HipVerdict::AsRecorded);
-    let retargeted = placed.with_hip_centres(finding, options.frame_rate_hz)?;
+    let finding = FitFinding::without_evidence(HipVerdict::AsRecorded);
+    let retargeted = placed.corrected(finding, options.frame_rate_hz)?;
     Ok((retargeted, evidence))
 }
 
@@ -178,15 +180,18 @@ impl Placed {
         evidence::walking_evidence(&self.source, &self.body.clip, self.origin)
     }
 
-    /// The motion with its legs corrected as found, at the file's rate or another.
-    fn with_hip_centres(
+    /// The motion with its legs and its head corrected as found, at the file's rate or another.
+    fn corrected(
         mut self,
-        hip_centres: HipFinding,
+        fit: FitFinding,
         frame_rate_hz: Option<f64>,
     ) -> Result<Retargeted, RetargetError> {
-        if let Some(correction) = hip_centres.verdict.correction() {
+        if let Some(correction) = fit.hip_centres.verdict.correction() {
             legs::correct_legs(&mut self.source, correction);
             self.body = embody(&self.source)?;
+        }
+        if let Some(head) = &fit.head {
+            turn_head(&mut self.body.clip, head.correction);
         }
         let Embodied {
             mut clip,
@@ -210,9 +215,21 @@ impl Placed {
                 in_place: self.in_place,
                 cycle_frames: None,
                 repeats: 1,
-                hip_centres,
+                fit,
             },
         })
+    }
+}
+
+/// Turns neck and head in every frame; what is above each keeps its own turn.
+fn turn_head(clip: &mut Clip, turn: HeadCarriage) {
+    let [neck, head] =
+        [turn.neck_deg, turn.head_deg].map(|degrees| Quat::from_rotation_x(degrees.to_radians()));
+    for pose in &mut clip.poses {
+        let [on_trunk, on_neck] =
+            [Joint::Neck, Joint::Head].map(|joint| pose.rotations[joint.index()]);
+        pose.rotations[Joint::Neck.index()] = (on_trunk * neck).normalize();
+        pose.rotations[Joint::Head.index()] = (neck.inverse() * on_neck * head).normalize();
     }
 }
 

@@ -2,10 +2,10 @@
 
 use footfall_core::rotation::log_map;
 use footfall_core::{Clip, JOINT_COUNT, Joint};
-use footfall_motion::hip_centres::HipFinding;
 use footfall_motion::phases::{Phase, segment_phases};
 use footfall_motion::recording::{Recording, RecordingError};
 use footfall_motion::retarget::RetargetOptions;
+use footfall_motion::skeleton_fit::FitFinding;
 use footfall_motion::switches::{Switch, SwitchResidual, analyse_switches};
 use std::path::{Path, PathBuf};
 
@@ -57,9 +57,9 @@ impl Motion {
         }
     }
 
-    /// Finding about the recording's hip joints.
-    pub(crate) const fn hip_centres(&self) -> &HipFinding {
-        &self.recording.retargeted.report.hip_centres
+    /// Findings about the recording's skeleton.
+    pub(crate) const fn fit(&self) -> &FitFinding {
+        &self.recording.retargeted.report.fit
     }
 
     /// The motion on the canonical body.

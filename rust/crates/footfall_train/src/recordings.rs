@@ -5,9 +5,10 @@ use crate::progress::{Progress, advance};
 use footfall_motion::corpus::{PersonFile, find_people, options_of};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
+use footfall_motion::skeleton_fit::Manner;
 use std::path::PathBuf;
 
-/// Reads files; each comes with the name of who walks in it. [Hip joints](footfall_motion::hip_centres) are found person by person.
+/// Reads files; each comes with the name of who walks in it. [Skeletons](footfall_motion::skeleton_fit) are put right person by person.
 ///
 /// # Errors
 /// [`TrainError::Recording`] names the file; [`TrainError::NoRecordings`] where there is none.
@@ -25,7 +26,7 @@ pub fn read_recordings(
         .map(|(path, subject)| PersonFile {
             path,
             subject,
-            is_plain: true,
+            manner: Manner::Unlabelled,
         })
         .collect();
     let people = find_people(&files, &options);

@@ -1,6 +1,6 @@
 //! `footfall retarget`: any body to the canonical body.
 
-use crate::hip_facts::HipFacts;
+use crate::fit_facts::{HeadFacts, HipFacts};
 use crate::motion_input::{MapArgs, read_file};
 use crate::output;
 use anyhow::Result;
@@ -51,6 +51,9 @@ struct Report {
     /// The finding about the hip joints; absent with --as-recorded.
     #[serde(skip_serializing_if = "Option::is_none")]
     hip_joints: Option<HipFacts>,
+    /// The finding about neck and head; absent where there is none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    head: Option<HeadFacts>,
 }
 
 pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
@@ -70,7 +73,8 @@ pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
             .filter(|joint| retargeted.report.source_joints[joint.index()].is_none())
             .map(Joint::name)
             .collect(),
-        hip_joints: HipFacts::of(&retargeted.report.hip_centres),
+        hip_joints: HipFacts::of(&retargeted.report.fit.hip_centres),
+        head: retargeted.report.fit.head.as_ref().map(HeadFacts::of),
     };
     if args.json {
         return output::print_json(&report);
@@ -85,6 +89,9 @@ pub(crate) fn run(args: &RetargetArgs) -> Result<()> {
     ));
     if let Some(hip_joints) = &report.hip_joints {
         output::note(&format!("hip joints {}", hip_joints.line));
+    }
+    if let Some(head) = &report.head {
+        output::note(&format!("head: {}", head.line));
     }
     Ok(())
 }

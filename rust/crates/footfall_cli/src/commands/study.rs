@@ -1,7 +1,7 @@
 //! `footfall study`: ask people.
 
 use crate::corpus_pair::CorpusPair;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use crate::output;
 use crate::study::{Excerpt, StudyOptions, excerpts, page};
 use anyhow::{Context as _, Result, ensure};
@@ -21,7 +21,7 @@ pub(crate) struct StudyArgs {
     #[command(flatten)]
     corpora: CorpusPair,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
     /// Output file for the page
     #[arg(short, long, value_name = "STUDY.html")]
     output: PathBuf,
@@ -65,7 +65,7 @@ pub(crate) fn run(args: &StudyArgs) -> Result<()> {
     output::refuse_overwrite(&[&args.corpora.real.index, &choice.index], &args.output)?;
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let corpora = args.corpora.read(args.knees)?;
+    let corpora = args.corpora.read(args.fit)?;
     let synthesised = corpora
         .synthesised
         .as_ref()

@@ -61,7 +61,7 @@ impl<'a> TrainingRun<'a> {
     fn read_where(&self, conditions: &[Where]) -> Result<Corpus> {
         let corpus = self
             .corpus
-            .knees
+            .fit
             .read_corpus(&self.corpus.index, conditions)?;
         for clip in &corpus.clips {
             output::refuse_overwrite(&[&clip.row.path], self.output)?;
@@ -95,7 +95,7 @@ impl<'a> TrainingRun<'a> {
         for (option, conditions) in own.iter().chain(further) {
             words.extend(conditions.iter().map(|one| format!("--{option} '{one}'")));
         }
-        words.extend(self.corpus.knees.words());
+        words.extend(self.corpus.fit.words());
         words.extend_from_slice(options);
         words.push(format!("-o {}", name_of(self.output)));
         Provenance {

@@ -2,16 +2,16 @@
 
 use crate::common::footfall;
 use footfall_motion::bvh::{self, clip_to_bvh};
-use footfall_motion::retarget::{HipCentres, RetargetOptions, normalised_start, retarget};
+use footfall_motion::retarget::{RetargetOptions, SkeletonFit, normalised_start, retarget};
 use footfall_tests::data::{own_file, recordings};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
 /// The bytes that a recording becomes with its hip joints from this source.
-fn expected(path: &Path, hip_centres: HipCentres) -> String {
+fn expected(path: &Path, fit: SkeletonFit) -> String {
     let options = RetargetOptions {
-        hip_centres,
+        fit,
         ..RetargetOptions::default()
     };
     let retargeted = retarget(&bvh::read(path).expect("a recording"), &options).expect("a body");
@@ -48,12 +48,12 @@ fn misplaced_hip_joints_move_unless_they_are_to_stay() {
     };
     let walk = data.join("cmu/neutral_walk/cmu_05_walking_train_02.bvh");
     let (plain, said) = written(&walk, &["--as-recorded"]);
-    assert_eq!(plain, expected(&walk, HipCentres::AsRecorded));
+    assert_eq!(plain, expected(&walk, SkeletonFit::AsRecorded));
     assert!(!said.contains("hip joints"), "{said}");
     assert_eq!(facts(&walk, &["--as-recorded"])["hip_joints"], Value::Null);
 
     let (natural, said) = written(&walk, &[]);
-    assert_eq!(natural, expected(&walk, HipCentres::FromRecording));
+    assert_eq!(natural, expected(&walk, SkeletonFit::FromRecording));
     assert_ne!(natural, plain);
     assert!(said.contains("hip joints moved"), "{said}");
     let found = &facts(&walk, &[])["hip_joints"];

@@ -1,4 +1,4 @@
-//! People of an index, and each person's hip joints.
+//! People of an index, and what is wrong with each person's skeleton.
 //!
 //! A person is a subject with one skeleton: a subject whose clips have several skeletons is several people. A subject that
 //! the index marks as unsure with a `?` may be any person, so each of its clips stands for itself. One person under two
@@ -6,15 +6,16 @@
 //! taken for one.
 
 use super::IndexRow;
-use crate::hip_centres::{HipFinding, WalkingEvidence, find_hip_centres};
+use crate::hip_centres::WalkingEvidence;
 use crate::recording::read_as_recorded;
-use crate::retarget::{HipCentres, RetargetOptions, Retargeted};
+use crate::retarget::{RetargetOptions, Retargeted, SkeletonFit};
+use crate::skeleton_fit::{FitFinding, Manner, find_fit};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;
 use std::path::{Path, PathBuf};
 
-/// Styles whose clips show a person's knees: acted walks bend them on purpose.
+/// Styles whose clips show a person's knees and head: acted walks bend them on purpose.
 const PLAIN: [&str; 2] = ["neutral", "normal"];
 
 /// A person of a corpus.
@@ -24,8 +25,8 @@ pub struct Person {
     pub subject: String,
     /// The recordings with this person's skeleton, in the order of the index.
     pub paths: Vec<PathBuf>,
-    /// The finding about the hip joints.
-    pub hip_centres: HipFinding,
+    /// The findings about the skeleton.
+    pub fit: FitFinding,
 }
 
 /// A recording and who is said to be in it.
@@ -35,8 +36,8 @@ pub struct PersonFile<'a> {
     pub path: &'a Path,
     /// The person.
     pub subject: &'a str,
-    /// True if it is not acted; acted walks are no evidence for hip joints.
-    pub is_plain: bool,
+    /// The manner that it is said to show.
+    pub manner: Manner,
 }
 
 /// A clip's part in finding its person.
@@ -60,10 +61,16 @@ pub(super) fn rows_of_same_people<'a>(
     let files = all.iter().map(|row| PersonFile {
         path: &row.path,
         subject: row.subject(),
-        is_plain: PLAIN.contains(&row.style()),
+        manner: if PLAIN.contains(&row.style()) {
+            Manner::Plain
+        } else {
+            Manner::Acted
+        },
     });
     let of_same = |file: &PersonFile<'_>| {
-        file.is_plain && !is_unidentified(file.subject) && subjects.contains(file.subject)
+        file.manner == Manner::Plain
+            && !is_unidentified(file.subject)
+            && subjects.contains(file.subject)
     };
     files
         .filter(|file| paths.contains(file.path) || of_same(file))
@@ -75,7 +82,7 @@ pub fn find_people(files: &[PersonFile<'_>], options: &RetargetOptions) -> Vec<P
     read_people(files, options, |_| false).0
 }
 
-/// Recordings with their hip joints as the files have them.
+/// Recordings as the files have them.
 pub(super) type AsRecorded = BTreeMap<PathBuf, Retargeted>;
 
 /// As [`find_people`], with the motion of those files that are to be kept.
@@ -117,7 +124,7 @@ fn people_of(witnesses: Vec<Witness<'_>>) -> Vec<Person> {
 /// shows another person on a foreign skeleton, and stands for itself.
 fn people_of_one_name(clips: Vec<Witness<'_>>) -> Vec<Person> {
     let person = Person::from_clips(&clips);
-    let Some(correction) = person.hip_centres.verdict.correction() else {
+    let Some(correction) = person.fit.hip_centres.verdict.correction() else {
         return vec![person];
     };
     let (own, others): (Vec<_>, Vec<_>) = clips
@@ -135,25 +142,33 @@ impl Person {
     fn from_clips(clips: &[Witness<'_>]) -> Self {
         let plain: Vec<&WalkingEvidence> = clips
             .iter()
-            .filter(|clip| clip.file.is_plain)
+            .filter(|clip| clip.file.manner != Manner::Acted)
             .map(|clip| &clip.evidence)
             .collect();
+        let is_labelled = clips
+            .iter()
+            .all(|clip| clip.file.manner != Manner::Unlabelled);
+        let manner = if is_labelled {
+            Manner::Plain
+        } else {
+            Manner::Unlabelled
+        };
         Self {
             subject: clips[0].file.subject.to_owned(),
-            hip_centres: find_hip_centres(&plain),
+            fit: find_fit(&plain, manner),
             paths: clips.iter().map(|clip| clip.file.path.to_owned()).collect(),
         }
     }
 }
 
-/// Options under which one of the recordings is read: with its person's hip joints where they are known.
+/// Options under which one of the recordings is read: with its person's skeleton put right where that is known.
 pub fn options_of(people: &[Person], path: &Path, options: &RetargetOptions) -> RetargetOptions {
     let person = people
         .iter()
         .find(|person| person.paths.iter().any(|own| own == path));
-    let known = person.map(|person| HipCentres::Known(person.hip_centres));
+    let known = person.map(|person| SkeletonFit::Known(person.fit));
     RetargetOptions {
-        hip_centres: known.unwrap_or(options.hip_centres),
+        fit: known.unwrap_or(options.fit),
         ..options.clone()
     }
 }

@@ -1,12 +1,13 @@
-//! Evidence of a file about its skeleton's legs: the stances of its walking, seen from the pelvis.
+//! Evidence of a file about its skeleton: the stances of its walking, seen from the pelvis, and the carriage of the head.
 
 use super::rest::rest_rotations;
 use super::source::{SourceFrame, SourceMotion};
 use crate::contacts::{ContactConfig, detect_contacts};
+use crate::head_carriage::HeadCarriage;
 use crate::hip_centres::{FARTHEST, Origin, PHASES, STRIDE_SHARES, Stance, WalkingEvidence};
 use crate::steps::segment_walks;
 use footfall_core::rotation::{heading, wrap_angle};
-use footfall_core::{Clip, Joint, Side, Skeleton, StepPosition};
+use footfall_core::{Clip, Joint, ModelPose, Side, Skeleton, StepPosition};
 use glam::{Quat, Vec3};
 
 /// Plain walking: seconds a stride, metres a second of the canonical body; the most that the way may lead aside and the body
@@ -30,6 +31,12 @@ pub(super) fn walking_evidence(
     origin: Origin,
 ) -> WalkingEvidence {
     let is_own_body = is_canonical(source);
+    let strides = if is_own_body {
+        Vec::new()
+    } else {
+        plain_strides(source, clip)
+    };
+    let pelvis = rest_rotations(source)[Joint::Hips.index()].inverse();
     WalkingEvidence {
         segments: Side::BOTH.map(|side| {
             [side.upper_leg(), side.lower_leg()]
@@ -38,11 +45,17 @@ pub(super) fn walking_evidence(
         bones: bones(|joint| source.rest.position(joint), source.leg_length),
         is_own_body,
         origin,
-        stances: if is_own_body {
-            Vec::new()
-        } else {
-            stances(source, clip)
-        },
+        stances: strides
+            .iter()
+            .map(|&(side, first, end)| Stance {
+                side,
+                hip_from_ankle: hips_over_stance(source, pelvis, side, first, end),
+            })
+            .collect(),
+        heads: strides
+            .iter()
+            .map(|&(_, first, end)| head_carriage(clip, first, end))
+            .collect(),
     }
 }
 
@@ -68,10 +81,10 @@ pub(super) fn is_canonical(source: &SourceMotion) -> bool {
             .all(|(bone, own)| (bone - own).abs() < OWN_BONES)
 }
 
-fn stances(source: &SourceMotion, clip: &Clip) -> Vec<Stance> {
+/// Strides of plain walking straight ahead: the foot that stands first, the frame of its landing and that of its next.
+fn plain_strides(source: &SourceMotion, clip: &Clip) -> Vec<(Side, usize, usize)> {
     let contacts = detect_contacts(clip, &ContactConfig::from_frame(source.first_motion_frame));
-    let pelvis = rest_rotations(source)[Joint::Hips.index()].inverse();
-    let mut stances = Vec::new();
+    let mut strides = Vec::new();
     for walk in segment_walks(clip, &contacts) {
         for pair in walk.steps.windows(2) {
             let is_inside = pair
@@ -86,14 +99,24 @@ fn stances(source: &SourceMotion, clip: &Clip) -> Vec<Stance> {
             let stood = stood.map_or(0, |stance| stance.last + 1 - first);
             let is_walking = stood as f64 >= LEAST_STANCE * (end - first) as f64;
             if is_inside && is_walking && goes_ahead(clip, first, end) {
-                stances.push(Stance {
-                    side,
-                    hip_from_ankle: hips_over_stance(source, pelvis, side, first, end),
-                });
+                strides.push((side, first, end));
             }
         }
     }
-    stances
+    strides
+}
+
+/// Mean pitch of neck and head over a stride.
+fn head_carriage(clip: &Clip, first: usize, end: usize) -> HeadCarriage {
+    let frames = &clip.poses[first..end.min(clip.poses.len())];
+    let mut mean = HeadCarriage::default();
+    for pose in frames {
+        let body = ModelPose::of(&clip.skeleton, pose);
+        let down = |joint| -(body.rotation(joint) * Vec3::Z).y.asin().to_degrees();
+        mean.neck_deg += down(Joint::Neck) / frames.len() as f32;
+        mean.head_deg += down(Joint::Head) / frames.len() as f32;
+    }
+    mean
 }
 
 /// Returns true when a stride is plain walking straight ahead.

@@ -1,6 +1,6 @@
 //! Findings and errors of bringing a recording onto the canonical skeleton.
 
-use crate::hip_centres::HipFinding;
+use crate::skeleton_fit::FitFinding;
 use footfall_core::{JOINT_COUNT, Joint};
 
 /// Findings of retargeting about a file.
@@ -20,8 +20,8 @@ pub struct RetargetReport {
     pub cycle_frames: Option<usize>,
     /// Number of times that the clip shows the same steps: more than once for a loop that was unrolled.
     pub repeats: usize,
-    /// The finding about the hip joints.
-    pub hip_centres: HipFinding,
+    /// The findings about hip joints and head.
+    pub fit: FitFinding,
 }
 
 /// Errors of retargeting a file.

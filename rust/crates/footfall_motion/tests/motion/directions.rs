@@ -4,7 +4,7 @@
 
 use footfall_core::{Joint, ModelPose, forward_kinematics};
 use footfall_motion::bvh::{self, BvhFile, JointTransforms};
-use footfall_motion::retarget::{HipCentres, RetargetOptions, retarget};
+use footfall_motion::retarget::{RetargetOptions, SkeletonFit, retarget};
 use glam::Vec3;
 
 /// The names of hips, neck, left upper arm, elbow, hand, hip joint, knee, ankle and toe joint, then the right side.
@@ -124,7 +124,7 @@ fn directions_agree_on_every_recording() {
     let mut model = ModelPose::default();
     // Corrected legs point elsewhere on purpose.
     let as_recorded = RetargetOptions {
-        hip_centres: HipCentres::AsRecorded,
+        fit: SkeletonFit::AsRecorded,
         ..RetargetOptions::default()
     };
     for path in &files {

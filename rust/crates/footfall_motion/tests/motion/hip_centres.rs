@@ -5,14 +5,14 @@ use footfall_core::{Clip, ModelPose, Side, forward_kinematics};
 use footfall_motion::bvh::{BvhFile, clip_to_bvh, write};
 use footfall_motion::corpus::{Corpus, CorpusError, Where};
 use footfall_motion::hip_centres::HipVerdict;
-use footfall_motion::retarget::{HipCentres, RetargetOptions, Retargeted, retarget};
+use footfall_motion::retarget::{RetargetOptions, Retargeted, SkeletonFit, retarget};
 use glam::Vec3;
 use std::fmt::Write as _;
 use std::path::Path;
 
 fn read(file: &BvhFile) -> Retargeted {
     let options = RetargetOptions {
-        hip_centres: HipCentres::FromRecording,
+        fit: SkeletonFit::FromRecording,
         ..RetargetOptions::default()
     };
     retarget(file, &options).expect("a body that can be placed")
@@ -20,7 +20,7 @@ fn read(file: &BvhFile) -> Retargeted {
 
 fn as_recorded(file: &BvhFile) -> Retargeted {
     let options = RetargetOptions {
-        hip_centres: HipCentres::AsRecorded,
+        fit: SkeletonFit::AsRecorded,
         ..RetargetOptions::default()
     };
     retarget(file, &options).expect("a body that can be placed")
@@ -39,7 +39,7 @@ fn knees_apart(a: &Clip, b: &Clip) -> f32 {
 /// Recordings of an index, with the hip joints found person by person.
 fn read_corpus(index: &Path, conditions: &[Where]) -> Result<Corpus, CorpusError> {
     let options = RetargetOptions {
-        hip_centres: HipCentres::FromRecording,
+        fit: SkeletonFit::FromRecording,
         ..RetargetOptions::default()
     };
     Corpus::read_with(index, conditions, &options)
@@ -52,11 +52,14 @@ fn a_badly_fitted_skeleton_gets_its_knees_back() {
     for offset in [Vec3::new(0.0, -0.018, 0.045), Vec3::new(0.0, -0.02, 0.035)] {
         let file = misfitted(&truth, offset);
         let recorded = as_recorded(&file);
-        assert_eq!(recorded.report.hip_centres.verdict, HipVerdict::AsRecorded);
+        assert_eq!(
+            recorded.report.fit.hip_centres.verdict,
+            HipVerdict::AsRecorded
+        );
         let bad = knees_apart(&truth, &recorded.clip);
         assert!(bad > 5.0, "the fit is bad: {bad}");
         let read = read(&file);
-        let correction = *read.report.hip_centres.verdict.correction().unwrap();
+        let correction = *read.report.fit.hip_centres.verdict.correction().unwrap();
         for side in Side::BOTH {
             let moved = correction.offset(side) * 0.84;
             assert!(
@@ -85,7 +88,13 @@ fn pelvis_and_feet_stay_where_they_were() {
     );
     let recorded = as_recorded(&file);
     let corrected = read(&file);
-    let correction = *corrected.report.hip_centres.verdict.correction().unwrap();
+    let correction = *corrected
+        .report
+        .fit
+        .hip_centres
+        .verdict
+        .correction()
+        .unwrap();
     let scale = corrected.report.scale / recorded.report.scale;
     let unit = recorded.clip.skeleton.mean_leg_length();
     // The body has two legs alike, so it hangs between the hip joints, and shows nothing of what one moves more than the other.
@@ -114,7 +123,7 @@ fn our_own_files_are_never_corrected() {
     for crouch in [0.0, 0.03, 0.2] {
         let clip = natural_walker(60.0, 400, crouch);
         let read = read(&clip_to_bvh(&clip));
-        assert_eq!(read.report.hip_centres.verdict, HipVerdict::OwnBody);
+        assert_eq!(read.report.fit.hip_centres.verdict, HipVerdict::OwnBody);
         let knee = knees_apart(&clip, &read.clip);
         assert!(knee < 0.1, "knees moved by {knee} degrees");
         let again = self::read(&clip_to_bvh(&read.clip));
@@ -129,7 +138,7 @@ fn natural_and_crouching_people_stay_as_they_are() {
     for (crouch, expected) in [(0.0, HipVerdict::Natural), (0.2, HipVerdict::OwnManner)] {
         let clip = natural_walker(60.0, 500, crouch);
         let read = read(&misfitted(&clip, slight));
-        assert_eq!(read.report.hip_centres.verdict, expected, "{crouch}");
+        assert_eq!(read.report.fit.hip_centres.verdict, expected, "{crouch}");
         assert!(knees_apart(&clip, &read.clip) < 4.0);
     }
 }
@@ -146,8 +155,8 @@ fn knees_that_could_be_bent_on_purpose_are_left() {
     );
     for file in [slight, bent] {
         let left = read(&file);
-        assert_eq!(left.report.hip_centres.verdict.correction(), None);
-        assert!(left.report.hip_centres.probability.unwrap() < 0.5);
+        assert_eq!(left.report.fit.hip_centres.verdict.correction(), None);
+        assert!(left.report.fit.hip_centres.probability.unwrap() < 0.5);
         assert!(knees_apart(&left.clip, &as_recorded(&file).clip) < 1e-3);
     }
 }
@@ -159,7 +168,7 @@ fn a_clip_of_two_steps_is_too_short_to_tell() {
         Vec3::new(0.0, -0.018, 0.045),
     );
     assert_eq!(
-        read(&file).report.hip_centres.verdict,
+        read(&file).report.fit.hip_centres.verdict,
         HipVerdict::TooLittleWalking
     );
 }
@@ -194,7 +203,7 @@ fn all_clips_of_a_person_tell_and_all_are_corrected() {
         let corpus = read_corpus(&path, &conditions).unwrap();
         let clips = corpus.clips.iter();
         clips
-            .map(|clip| clip.retargeted.report.hip_centres.verdict)
+            .map(|clip| clip.retargeted.report.fit.hip_centres.verdict)
             .collect()
     };
     let all = verdicts(&[]);
@@ -222,7 +231,7 @@ fn a_deep_crouch_of_a_corrected_person_stays_a_deep_crouch() {
     std::fs::write(&path, format!("path,category,style,subject\n{rows}")).unwrap();
     let corpus = read_corpus(&path, &["style=crouching".parse().unwrap()]).unwrap();
     let read = &corpus.clips[0].retargeted;
-    assert!(read.report.hip_centres.verdict.correction().is_some());
+    assert!(read.report.fit.hip_centres.verdict.correction().is_some());
     let apart = knees_apart(&crouched, &read.clip);
     assert!(apart < 4.0, "knees are {apart} degrees off");
     let deep = |clip: &Clip| knee_degrees(clip, 200, Side::Left);

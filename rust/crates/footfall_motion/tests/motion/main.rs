@@ -6,6 +6,7 @@ mod contacts;
 mod contacts_of_people;
 mod corpus;
 mod directions;
+mod head_carriage;
 mod hip_centres;
 mod people;
 mod retarget;

@@ -6,7 +6,7 @@ use footfall_motion::bvh;
 use footfall_motion::corpus::{Corpus, Person, Where};
 use footfall_motion::figure::sole_points;
 use footfall_motion::recording::Recording;
-use footfall_motion::retarget::{HipCentres, RetargetOptions, retarget};
+use footfall_motion::retarget::{RetargetOptions, SkeletonFit, retarget};
 
 /// Tenth percentile of the knees over a person's walks, degrees, as recorded.
 const RECORDED: [(&str, f32); 8] = [
@@ -20,14 +20,14 @@ const RECORDED: [(&str, f32); 8] = [
     ("cmu35", 17.6),
 ];
 
-fn corpus(conditions: &[&str], hip_centres: HipCentres) -> Option<Corpus> {
+fn corpus(conditions: &[&str], fit: SkeletonFit) -> Option<Corpus> {
     let folder = crate::common::data_folder()?;
     let conditions: Vec<Where> = conditions
         .iter()
         .map(|text| text.parse().expect("a condition"))
         .collect();
     let options = RetargetOptions {
-        hip_centres,
+        fit,
         ..RetargetOptions::default()
     };
     Some(Corpus::read_with(folder.join("index.csv"), &conditions, &options).expect("the CMU walks"))
@@ -118,8 +118,8 @@ fn jerks<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
 fn knees_of_the_cmu_walks_bend_as_people_do_and_soles_stay_flat() {
     let conditions = ["category=*walk*", "path=cmu/*"];
     let (Some(corpus), Some(recorded)) = (
-        corpus(&conditions, HipCentres::FromRecording),
-        corpus(&conditions, HipCentres::AsRecorded),
+        corpus(&conditions, SkeletonFit::FromRecording),
+        corpus(&conditions, SkeletonFit::AsRecorded),
     ) else {
         return;
     };
@@ -129,7 +129,7 @@ fn knees_of_the_cmu_walks_bend_as_people_do_and_soles_stay_flat() {
         let person = people.find(|person| person.subject == name).unwrap();
         let before = straightest_knee(of_person(&recorded, person));
         assert!((before - known).abs() < 0.5, "{name}: {before} as recorded");
-        let found = &person.hip_centres;
+        let found = &person.fit.hip_centres;
         assert!(found.verdict.correction().is_some(), "{name}: {found:?}");
         let [strike, peak, end] = found.knee.unwrap();
         // A few strides place a joint to a millimetre or two, which is a degree or two here.
@@ -170,8 +170,8 @@ fn knees_of_the_cmu_walks_bend_as_people_do_and_soles_stay_flat() {
 fn soles_and_pelvis_of_the_cmu_walks_turn_as_recorded() {
     let conditions = ["category=neutral_walk", "path=cmu/*"];
     let (Some(corpus), Some(recorded)) = (
-        corpus(&conditions, HipCentres::FromRecording),
-        corpus(&conditions, HipCentres::AsRecorded),
+        corpus(&conditions, SkeletonFit::FromRecording),
+        corpus(&conditions, SkeletonFit::AsRecorded),
     ) else {
         return;
     };
@@ -192,7 +192,7 @@ fn soles_and_pelvis_of_the_cmu_walks_turn_as_recorded() {
 
 #[test]
 fn a_clip_that_does_not_suit_its_person_stands_for_itself() {
-    let Some(corpus) = corpus(&["subject=cmu16"], HipCentres::FromRecording) else {
+    let Some(corpus) = corpus(&["subject=cmu16"], SkeletonFit::FromRecording) else {
         return;
     };
     let people = &corpus.report.people;
@@ -200,7 +200,13 @@ fn a_clip_that_does_not_suit_its_person_stands_for_itself() {
     assert_eq!((people.len(), alone.len()), (2, 1), "{people:?}");
     // Its left knee is straight for a tenth of the time as recorded, its right one bent by 30 degrees.
     assert!(alone[0].paths[0].ends_with("cmu_16_walkx_train_33.bvh"));
-    let [left, right] = alone[0].hip_centres.verdict.correction().unwrap().offsets;
+    let [left, right] = alone[0]
+        .fit
+        .hip_centres
+        .verdict
+        .correction()
+        .unwrap()
+        .offsets;
     assert!(left.x + 0.015 < right.x, "{left} {right}");
     let straightest = straightest_knee(of_person(&corpus, alone[0]));
     assert!((3.0..=9.0).contains(&straightest), "{straightest}");
@@ -212,11 +218,11 @@ fn knees_of_the_people_in_consistent_skeletons_stay_as_recorded() {
         ["category=neutral_walk", "path=bandai/*"],
         ["style=neutral", "path=o3de/*"],
     ] {
-        let Some(corpus) = corpus(&conditions, HipCentres::FromRecording) else {
+        let Some(corpus) = corpus(&conditions, SkeletonFit::FromRecording) else {
             return;
         };
         for person in &corpus.report.people {
-            let found = person.hip_centres;
+            let found = person.fit.hip_centres;
             assert_eq!(
                 found.verdict.correction(),
                 None,
@@ -244,10 +250,52 @@ fn a_recording_of_an_acted_walk_keeps_its_manner_on_its_own() {
         let file =
             bvh::read(folder.join(format!("bandai/styled_walk/bn1_walk_{name}_001.bvh"))).unwrap();
         let options = RetargetOptions {
-            hip_centres: HipCentres::FromRecording,
+            fit: SkeletonFit::FromRecording,
             ..RetargetOptions::default()
         };
-        let found = retarget(&file, &options).unwrap().report.hip_centres;
+        let found = retarget(&file, &options).unwrap().report.fit.hip_centres;
         assert_eq!(found.verdict.correction(), None, "{name}: {found:?}");
     }
+}
+
+/// Mean pitch of a joint over a person's walks, degrees forwards and down.
+fn pitch<'a>(clips: impl Iterator<Item = &'a Recording>, joint: Joint) -> f32 {
+    let of_clip = |clip: &'a Recording| {
+        let body = |frame: usize| ModelPose::of(&clip.clip().skeleton, &clip.clip().poses[frame]);
+        let forward = move |frame| body(frame).rotation(joint) * glam::Vec3::Z;
+        let frames = walking_frames(clip).into_iter();
+        frames.map(move |frame| -forward(frame).y.asin().to_degrees())
+    };
+    let pitches: Vec<f32> = clips.flat_map(of_clip).collect();
+    pitches.iter().sum::<f32>() / pitches.len() as f32
+}
+
+#[test]
+fn faces_of_the_cmu_walks_are_nearly_level_and_necks_are_upright() {
+    let conditions = ["category=*walk*", "path=cmu/*"];
+    let (Some(corpus), Some(recorded)) = (
+        corpus(&conditions, SkeletonFit::FromRecording),
+        corpus(&conditions, SkeletonFit::AsRecorded),
+    ) else {
+        return;
+    };
+    let mut faces = Vec::new();
+    for (name, _) in RECORDED {
+        let mut people = corpus.report.people.iter();
+        let person = people.find(|person| person.subject == name).unwrap();
+        faces.push(pitch(of_person(&recorded, person), Joint::Head));
+        let face = pitch(of_person(&corpus, person), Joint::Head);
+        assert!(
+            (-2.0..=12.0).contains(&face),
+            "{name}: the face is {face} down"
+        );
+        let neck = pitch(of_person(&corpus, person), Joint::Neck);
+        assert!(
+            (-5.0..=10.0).contains(&neck),
+            "{name}: the neck is {neck} forwards"
+        );
+    }
+    let least = quantile(&mut faces, 0.0);
+    let most = quantile(&mut faces, 0.99);
+    assert!(most - least > 30.0, "the recordings differ: {faces:?}");
 }

@@ -55,7 +55,7 @@ impl ClipsView {
                 motion.recording.step_count(),
                 motion.recording.retargeted.report.map
             ))
-            .on_hover_text(format!("Hip joints {}", motion.hip_centres()));
+            .on_hover_text(motion.fit().to_string());
             if ui
                 .small_button("Export BVH…")
                 .on_hover_text("On the canonical body")

@@ -32,7 +32,7 @@ pub(super) fn run(
     index: &Path,
     folder: &Path,
 ) -> Result<()> {
-    let corpus = args.knees.read_corpus(index, &args.conditions)?;
+    let corpus = args.fit.read_corpus(index, &args.conditions)?;
     fs::create_dir_all(folder)
         .with_context(|| format!("cannot create the folder {}", folder.display()))?;
     let mut report = Report {

@@ -2,7 +2,7 @@
 
 mod table;
 
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use crate::output;
 use anyhow::Result;
 use footfall_motion::corpus::Where;
@@ -44,7 +44,7 @@ pub(crate) struct ContactsArgs {
     #[arg(long, requires = "corpus")]
     ablate: bool,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
     /// Tolerance for switches and events of sensors, milliseconds
     #[arg(long, default_value_t = ContactsRequest::default().tolerance_ms)]
     tolerance: f64,
@@ -56,7 +56,7 @@ pub(crate) struct ContactsArgs {
 /// Evaluates, and returns the report that is printed as JSON.
 fn evaluate(args: &ContactsArgs) -> Result<ContactsReport> {
     let corpus = match &args.corpus {
-        Some(index) => Some(args.knees.read_corpus(index, &args.conditions)?),
+        Some(index) => Some(args.fit.read_corpus(index, &args.conditions)?),
         None => None,
     };
     Ok(evaluate_contacts(&ContactsRequest {

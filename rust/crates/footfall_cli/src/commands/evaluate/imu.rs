@@ -4,7 +4,7 @@ mod table;
 
 use crate::commands::imu::{KeptArgs, parse_site};
 use crate::commands::train::TrainingProgress;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -40,7 +40,7 @@ pub(crate) struct ImuArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
     /// Site of the sensor; twice for two sensors [default: the foot, foot and hand, and each site of the paper's figure 10]
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,
@@ -105,7 +105,7 @@ fn published_parts() -> impl TypedValueParser<Value = &'static [Published]> {
 fn evaluate(args: &ImuArgs) -> Result<ImuReport> {
     let request = args.request()?;
     request.check()?;
-    let corpus = args.knees.read_corpus(&args.corpus, &args.conditions)?;
+    let corpus = args.fit.read_corpus(&args.corpus, &args.conditions)?;
     let mut progress = TrainingProgress(output::Progress::new());
     let report = evaluate_sensors(&corpus.clips, &request, &mut progress)
         .with_context(|| args.corpus.display().to_string())?;

@@ -1,7 +1,7 @@
 //! A model, dressed in styles, and the captured recordings that it is judged beside.
 
 use crate::commands::synth::{StyleArg, dressed};
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use anyhow::Result;
 use footfall_model::GaitModel;
 use footfall_motion::corpus::{Corpus, Where};
@@ -23,7 +23,7 @@ pub(super) struct JudgedArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
 }
 
 impl JudgedArgs {
@@ -33,7 +33,7 @@ impl JudgedArgs {
     /// Reads the model and the recordings; the error names the file that cannot be read and why, or says that no recording fulfils the conditions.
     pub(super) fn read(&self) -> Result<(GaitModel, Corpus)> {
         let (model, _) = dressed(&self.model, &self.styles)?;
-        let corpus = self.knees.read_corpus(&self.corpus, &self.conditions)?;
+        let corpus = self.fit.read_corpus(&self.corpus, &self.conditions)?;
         Ok((model, corpus))
     }
 }

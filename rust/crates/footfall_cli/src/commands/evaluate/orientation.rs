@@ -4,7 +4,7 @@ mod filters;
 mod report;
 
 use crate::commands::imu::parse_site;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use crate::output;
 use anyhow::Result;
 use filters::FILTERS;
@@ -52,7 +52,7 @@ pub(crate) struct OrientationArgs {
     #[arg(long, value_parser = parse_site, default_value = "right_foot")]
     site: Site,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &OrientationArgs) -> Result<()> {
 fn evaluate(args: &OrientationArgs) -> Result<Report> {
     let mut report = Report::default();
     if let Some(index) = &args.corpus {
-        let corpus = args.knees.read_corpus(index, &args.conditions)?;
+        let corpus = args.fit.read_corpus(index, &args.conditions)?;
         for (seed, take) in corpus.clips.iter().enumerate() {
             let clip = &take.retargeted.clip;
             let first = take.retargeted.first_frame;

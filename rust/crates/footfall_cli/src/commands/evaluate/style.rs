@@ -3,7 +3,7 @@
 mod table;
 
 use crate::corpus_pair::CorpusPair;
-use crate::motion_input::KneesArgs;
+use crate::motion_input::FitArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
@@ -24,7 +24,7 @@ pub(crate) struct StyleArgs {
     #[command(flatten)]
     corpora: CorpusPair,
     #[command(flatten)]
-    knees: KneesArgs,
+    fit: FitArgs,
     /// Split that keeps real strides unseen: each take in turn, or each half of every recording [default: takes if every style has two]
     #[arg(long, value_enum)]
     split: Option<SplitArg>,
@@ -51,7 +51,7 @@ pub(crate) fn run(args: &StyleArgs) -> Result<()> {
 fn evaluate(args: &StyleArgs) -> Result<StyleReport> {
     let progress = output::Progress::new();
     progress.stage("reading the recordings", 0);
-    let corpora = args.corpora.read(args.knees)?;
+    let corpora = args.corpora.read(args.fit)?;
     let synthesised = corpora.synthesised.as_ref();
     let synthesised = synthesised.map(|corpus| corpus.clips.as_slice());
     progress.stage("judging", 0);

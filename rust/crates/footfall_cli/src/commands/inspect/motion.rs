@@ -1,7 +1,7 @@
 //! Facts of a recording.
 
 use super::fact;
-use crate::hip_facts::HipFacts;
+use crate::fit_facts::{HeadFacts, HipFacts};
 use crate::motion_input::{WalkFigures, read_file};
 use anyhow::Result;
 use footfall_core::{Joint, Side};
@@ -45,6 +45,8 @@ pub(super) struct MotionFacts {
     warnings: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     hip_joints: Option<HipFacts>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    head: Option<HeadFacts>,
 }
 
 /// Reads a recording.
@@ -102,7 +104,8 @@ pub(super) fn inspect(path: &Path, options: &RetargetOptions) -> Result<MotionFa
             .map(|_| "one loop: a style made of it alone is thin, with equal steps".to_owned())
             .into_iter()
             .collect(),
-        hip_joints: HipFacts::of(&motion.report.hip_centres),
+        hip_joints: HipFacts::of(&motion.report.fit.hip_centres),
+        head: motion.report.fit.head.as_ref().map(HeadFacts::of),
     })
 }
 
@@ -152,6 +155,9 @@ impl MotionFacts {
         ];
         if let Some(hip_joints) = &self.hip_joints {
             lines.push(fact("hip joints", &hip_joints.line));
+        }
+        if let Some(head) = &self.head {
+            lines.push(fact("head", &head.line));
         }
         if self.first_motion_frame > 0 {
             lines.push(fact(

@@ -1,11 +1,12 @@
-//! The finding about a recording's hip joints, as JSON, and notes about a corpus's people.
+//! Findings about a recording's skeleton, as JSON, and notes about a corpus's people.
 
 use crate::output;
 use footfall_motion::corpus::Person;
+use footfall_motion::head_carriage::HeadFinding;
 use footfall_motion::hip_centres::{HipFinding, HipVerdict};
 use serde::Serialize;
 
-/// A finding for people and scripts; lengths on the canonical body.
+/// A finding about hip joints for people and scripts; lengths on the canonical body.
 #[derive(Serialize)]
 pub(crate) struct HipFacts {
     verdict: &'static str,
@@ -48,6 +49,35 @@ impl HipFacts {
     }
 }
 
+/// A finding about neck and head for people and scripts: pitch forwards and downwards, degrees.
+#[derive(Serialize)]
+pub(crate) struct HeadFacts {
+    /// Strides of plain walking from which the carriage is estimated.
+    strides: usize,
+    recorded_neck_degrees: f32,
+    neck_degrees: f32,
+    recorded_face_degrees: f32,
+    face_degrees: f32,
+    /// The finding in one line.
+    #[serde(skip)]
+    pub(crate) line: String,
+}
+
+impl HeadFacts {
+    /// The finding.
+    pub(crate) fn of(finding: &HeadFinding) -> Self {
+        let (recorded, turn) = (finding.recorded, finding.correction);
+        Self {
+            strides: finding.strides,
+            recorded_neck_degrees: recorded.neck_deg,
+            neck_degrees: recorded.neck_deg + turn.neck_deg,
+            recorded_face_degrees: recorded.head_deg,
+            face_degrees: recorded.head_deg + turn.head_deg,
+            line: finding.to_string(),
+        }
+    }
+}
+
 const fn name(verdict: &HipVerdict) -> Option<&'static str> {
     Some(match verdict {
         HipVerdict::Corrected(_) => "corrected",
@@ -59,11 +89,14 @@ const fn name(verdict: &HipVerdict) -> Option<&'static str> {
     })
 }
 
-/// Says of a corpus whose hip joints moved, and of how many people they were left.
+/// Says of a corpus whose hip joints and heads moved, and of how many people the hip joints were left.
 pub(crate) fn note_people(people: &[Person]) {
     let mut left = 0_usize;
     for person in people {
-        let finding = &person.hip_centres;
+        let finding = &person.fit.hip_centres;
+        if let Some(head) = &person.fit.head {
+            output::note(&format!("head of {}: {head}", person.subject));
+        }
         if finding.verdict.correction().is_none() {
             left += 1;
         } else {
