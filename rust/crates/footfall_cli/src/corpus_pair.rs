@@ -1,6 +1,6 @@
 //! Two corpora on one command line, each with conditions of its own.
 
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use anyhow::{Context as _, Result};
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches};
 use footfall_motion::corpus::{Corpus, Where};
@@ -17,7 +17,7 @@ pub(crate) struct CorpusChoice {
 
 impl CorpusChoice {
     /// Reads the recordings.
-    pub(crate) fn read(&self, fit: FitArgs) -> Result<Corpus> {
+    pub(crate) fn read(&self, fit: SkeletonArgs) -> Result<Corpus> {
         fit.read_corpus(&self.index, &self.conditions)
     }
 }
@@ -120,7 +120,7 @@ pub(crate) struct ReadPair {
 
 impl CorpusPair {
     /// Reads both.
-    pub(crate) fn read(&self, fit: FitArgs) -> Result<ReadPair> {
+    pub(crate) fn read(&self, fit: SkeletonArgs) -> Result<ReadPair> {
         let real = self.real.read(fit).context("the real recordings")?;
         let synthesised = self
             .synthesised

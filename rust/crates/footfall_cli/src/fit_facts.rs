@@ -49,15 +49,15 @@ impl HipFacts {
     }
 }
 
-/// A finding about neck and head for people and scripts: pitch forwards and downwards, degrees.
+/// A finding about neck and head for people and scripts: degrees forwards and down, to the left, and towards the right shoulder.
 #[derive(Serialize)]
 pub(crate) struct HeadFacts {
     /// Strides of plain walking from which the carriage is estimated.
     strides: usize,
-    recorded_neck_degrees: f32,
-    neck_degrees: f32,
-    recorded_face_degrees: f32,
-    face_degrees: f32,
+    recorded_neck_degrees: [f32; 3],
+    neck_degrees: [f32; 3],
+    recorded_head_degrees: [f32; 3],
+    head_degrees: [f32; 3],
     /// The finding in one line.
     #[serde(skip)]
     pub(crate) line: String,
@@ -66,13 +66,13 @@ pub(crate) struct HeadFacts {
 impl HeadFacts {
     /// The finding.
     pub(crate) fn of(finding: &HeadFinding) -> Self {
-        let (recorded, turn) = (finding.recorded, finding.correction);
+        let (recorded, corrected) = (finding.recorded, finding.corrected);
         Self {
             strides: finding.strides,
-            recorded_neck_degrees: recorded.neck_deg,
-            neck_degrees: recorded.neck_deg + turn.neck_deg,
-            recorded_face_degrees: recorded.head_deg,
-            face_degrees: recorded.head_deg + turn.head_deg,
+            recorded_neck_degrees: recorded.neck.to_array(),
+            neck_degrees: corrected.neck.to_array(),
+            recorded_head_degrees: recorded.head.to_array(),
+            head_degrees: corrected.head.to_array(),
             line: finding.to_string(),
         }
     }

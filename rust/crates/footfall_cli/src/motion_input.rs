@@ -20,12 +20,12 @@ pub(crate) struct MapArgs {
     #[arg(long, value_name = "NAMES.toml")]
     map: Option<PathBuf>,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
 }
 
 /// Treatment of a skeleton that fits its person badly.
 #[derive(Clone, Copy, Debug, Default, clap::Args)]
-pub(crate) struct FitArgs {
+pub(crate) struct SkeletonArgs {
     /// Leave hip joints and head where the recording has them
     ///
     /// Skeletons fitted to markers misplace hip joints by centimetres, so that people crouch who did not, and tilt necks and
@@ -37,7 +37,7 @@ pub(crate) struct FitArgs {
     correct_hips: bool,
 }
 
-impl FitArgs {
+impl SkeletonArgs {
     /// Source of the hip joints' places and of the head's carriage.
     pub(crate) const fn skeleton(self) -> SkeletonFit {
         if self.as_recorded {
@@ -78,7 +78,7 @@ pub(crate) struct CorpusArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     pub(crate) conditions: Vec<Where>,
     #[command(flatten)]
-    pub(crate) fit: FitArgs,
+    pub(crate) fit: SkeletonArgs,
 }
 
 impl CorpusArgs {

@@ -26,6 +26,12 @@ impl ImuSample {
         }
     }
 
+    /// Returns true for a sample that was put in the place of an unusable one: no sensor measures [`standing`](Self::standing) to the bit.
+    pub fn is_stand_in(&self) -> bool {
+        let stand_in = Self::standing(self.time_secs);
+        self.force == stand_in.force && self.rate == stand_in.rate
+    }
+
     /// Returns true when every number is finite.
     pub fn is_finite(&self) -> bool {
         self.time_secs.is_finite() && self.force.is_finite() && self.rate.is_finite()

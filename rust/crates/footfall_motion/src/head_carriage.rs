@@ -10,15 +10,40 @@
 
 use crate::hip_centres::{Origin, WalkingEvidence};
 use crate::skeleton_fit::Manner;
+use glam::{EulerRot, Quat, Vec3};
+use std::array;
 use std::fmt::{Display, Formatter, Result};
 
-/// Pitch of neck and head: forwards and downwards, degrees from upright.
+/// Mean attitude of neck and head in plain walking, beside one that stands upright and looks where the way goes: degrees forwards and down
+/// (x), to the left (y) and towards the right shoulder (z), turned in the order y, x, z.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct HeadCarriage {
-    /// The line from the bottom of the neck to the head.
-    pub neck_deg: f32,
-    /// The face.
-    pub head_deg: f32,
+    /// The neck.
+    pub neck: Vec3,
+    /// The head.
+    pub head: Vec3,
+}
+
+impl HeadCarriage {
+    /// Angles of rotations relative to the way ahead.
+    pub(crate) fn of_rotations(neck: Quat, head: Quat) -> Self {
+        let degrees = |rotation: Quat| {
+            let (y, x, z) = rotation.to_euler(EulerRot::YXZ);
+            Vec3::new(x, y, z).map(f32::to_degrees)
+        };
+        Self {
+            neck: degrees(neck),
+            head: degrees(head),
+        }
+    }
+
+    /// The rotations of neck and head relative to the way ahead.
+    pub(crate) fn rotations(&self) -> [Quat; 2] {
+        [self.neck, self.head].map(|degrees| {
+            let [x, y, z] = degrees.map(f32::to_radians).to_array();
+            Quat::from_euler(EulerRot::YXZ, y, x, z)
+        })
+    }
 }
 
 /// Decision about a person's neck and head.
@@ -28,39 +53,45 @@ pub struct HeadFinding {
     pub strides: usize,
     /// Mean over them as recorded.
     pub recorded: HeadCarriage,
-    /// Turn that takes the error of the fit away.
-    pub correction: HeadCarriage,
+    /// The same without the error of the fit.
+    pub corrected: HeadCarriage,
 }
 
-/// A quantity of which people have one share and the fit of a skeleton another, degrees: means and standard deviations.
-struct Carriage {
-    people: (f32, f32),
-    fit: (f32, f32),
+/// Angles of which people have one share and the fit of a skeleton another, degrees: means and standard deviations.
+struct Attitude {
+    people: (Vec3, Vec3),
+    fit: (Vec3, Vec3),
 }
 
-/// Necks of O3DE's actor and Bandai's two neutral walkers; less that of 8 walkers of the CMU library.
-const NECK: Carriage = Carriage {
-    people: (5.0, 6.0),
-    fit: (-17.0, 4.0),
+/// Necks of O3DE's actor and Bandai's two neutral walkers; what 13 walkers of the CMU library have beyond that.
+const NECK: Attitude = Attitude {
+    people: (Vec3::new(5.0, 0.0, 0.0), Vec3::new(6.0, 3.0, 3.0)),
+    fit: (Vec3::new(-17.0, 0.0, 0.0), Vec3::new(4.0, 3.0, 9.0)),
 };
-/// Their faces.
-const HEAD: Carriage = Carriage {
-    people: (5.0, 6.0),
-    fit: (12.0, 14.0),
+/// Their heads.
+const HEAD: Attitude = Attitude {
+    people: (Vec3::new(5.0, 0.0, 0.0), Vec3::new(6.0, 3.0, 3.0)),
+    fit: (Vec3::new(12.0, 0.0, 0.0), Vec3::new(14.0, 9.0, 4.0)),
 };
-/// Standard deviation of necks and faces among all manners of walking (Bandai's acted styles), degrees.
+/// Standard deviation of necks and faces, up and down, among all manners of walking (Bandai's acted styles), degrees.
 const MANNERS_DEG: f32 = 16.0;
 
-impl Carriage {
-    /// The most probable turn that undoes the fit's share of a mean.
-    fn correction(&self, mean: f32, manner: Manner) -> f32 {
-        let people = match manner {
-            Manner::Plain => self.people.1,
-            Manner::Unlabelled | Manner::Acted => self.people.1.hypot(MANNERS_DEG),
-        };
-        let (usual, spread) = self.fit;
-        let weight = spread * spread / (spread * spread + people * people);
-        -(usual + weight * (mean - self.people.0 - usual))
+impl Attitude {
+    /// The most probable attitude of the person where the mean of a person's walks is `recorded`.
+    fn of_person(&self, recorded: Vec3, manner: Manner) -> Vec3 {
+        let [usual, usual_fit] = [self.people.0, self.fit.0].map(|mean| mean.to_array());
+        let [people, fit] = [self.people.1, self.fit.1].map(|spread| spread.to_array());
+        let recorded = recorded.to_array();
+        Vec3::from_array(array::from_fn(|axis| {
+            let manners = if axis == 0 && manner != Manner::Plain {
+                MANNERS_DEG
+            } else {
+                0.0
+            };
+            let variance = people[axis].powi(2) + manners.powi(2);
+            let share = variance / (variance + fit[axis].powi(2));
+            usual[axis] + share * (recorded[axis] - usual[axis] - usual_fit[axis])
+        }))
     }
 }
 
@@ -78,34 +109,47 @@ pub fn find_head_carriage(recordings: &[&WalkingEvidence], manner: Manner) -> Op
         .flat_map(|recording| recording.heads.iter().copied())
         .collect();
     let mean =
-        |of: fn(&HeadCarriage) -> f32| heads.iter().map(of).sum::<f32>() / heads.len() as f32;
+        |of: fn(&HeadCarriage) -> Vec3| heads.iter().map(of).sum::<Vec3>() / heads.len() as f32;
     (!heads.is_empty()).then(|| {
         let recorded = HeadCarriage {
-            neck_deg: mean(|head| head.neck_deg),
-            head_deg: mean(|head| head.head_deg),
+            neck: mean(|carriage| carriage.neck),
+            head: mean(|carriage| carriage.head),
         };
         HeadFinding {
             strides: heads.len(),
             recorded,
-            correction: HeadCarriage {
-                neck_deg: NECK.correction(recorded.neck_deg, manner),
-                head_deg: HEAD.correction(recorded.head_deg, manner),
+            corrected: HeadCarriage {
+                neck: NECK.of_person(recorded.neck, manner),
+                head: HEAD.of_person(recorded.head, manner),
             },
         }
     })
 }
 
-/// The line begins with "neck".
+impl HeadFinding {
+    /// Turns of neck and head, each in its own axes, that take the error away.
+    pub(crate) fn turns(&self) -> [Quat; 2] {
+        let [recorded, corrected] = [self.recorded, self.corrected].map(|mean| mean.rotations());
+        array::from_fn(|joint| recorded[joint].inverse() * corrected[joint])
+    }
+}
+
+/// The line begins with "neck"; angles are forwards or down, to the left, and towards the right shoulder.
 impl Display for HeadFinding {
     fn fmt(&self, out: &mut Formatter<'_>) -> Result {
-        let (was, turn) = (self.recorded, self.correction);
+        let angles = |degrees: Vec3| {
+            // Adding zero takes the sign from what rounds to none.
+            let [x, y, z] = (degrees.round() + Vec3::ZERO).to_array();
+            format!("{x:.0}/{y:.0}/{z:.0}°")
+        };
+        let (was, now) = (self.recorded, self.corrected);
         write!(
             out,
-            "neck {:.0} to {:.0}° forwards, face {:.0} to {:.0}° down over {} strides",
-            was.neck_deg,
-            was.neck_deg + turn.neck_deg,
-            was.head_deg,
-            was.head_deg + turn.head_deg,
+            "neck {} to {}, face {} to {} (down/left/tilted right) over {} strides",
+            angles(was.neck),
+            angles(now.neck),
+            angles(was.head),
+            angles(now.head),
             self.strides
         )
     }

@@ -166,6 +166,14 @@ impl Recording {
         }
     }
 
+    /// The same recording without what was put right about [the head](crate::head_carriage).
+    #[must_use]
+    pub fn with_head_as_recorded(&self) -> Self {
+        let mut recorded = self.clone();
+        recorded.retargeted.leave_head();
+        recorded
+    }
+
     /// The same recording, of a person with this name.
     #[must_use]
     pub fn of_subject(mut self, name: &str) -> Self {

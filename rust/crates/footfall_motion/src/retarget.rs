@@ -19,7 +19,6 @@ pub use joint_map::parse_joint_map;
 pub use report::{RetargetError, RetargetReport};
 
 use crate::bvh::BvhFile;
-use crate::head_carriage::HeadCarriage;
 use crate::hip_centres::{HipVerdict, Origin, WalkingEvidence};
 use crate::skeleton_fit::{FitFinding, Manner, find_fit};
 use footfall_core::rotation::{from_heading, heading, shortest_arc};
@@ -80,6 +79,13 @@ impl Retargeted {
                 repeats: 1,
                 fit: FitFinding::without_evidence(HipVerdict::OwnBody),
             },
+        }
+    }
+
+    /// Turns neck and head back to where the file has them.
+    pub(crate) fn leave_head(&mut self) {
+        if let Some(head) = self.report.fit.head.take() {
+            turn_head(&mut self.clip, head.turns().map(|turn| turn.inverse()));
         }
     }
 }
@@ -191,7 +197,7 @@ impl Placed {
             self.body = embody(&self.source)?;
         }
         if let Some(head) = &fit.head {
-            turn_head(&mut self.body.clip, head.correction);
+            turn_head(&mut self.body.clip, head.turns());
         }
         let Embodied {
             mut clip,
@@ -221,10 +227,8 @@ impl Placed {
     }
 }
 
-/// Turns neck and head in every frame; what is above each keeps its own turn.
-fn turn_head(clip: &mut Clip, turn: HeadCarriage) {
-    let [neck, head] =
-        [turn.neck_deg, turn.head_deg].map(|degrees| Quat::from_rotation_x(degrees.to_radians()));
+/// Turns neck and head in every frame; what is above the neck keeps its own turn.
+fn turn_head(clip: &mut Clip, [neck, head]: [Quat; 2]) {
     for pose in &mut clip.poses {
         let [on_trunk, on_neck] =
             [Joint::Neck, Joint::Head].map(|joint| pose.rotations[joint.index()]);

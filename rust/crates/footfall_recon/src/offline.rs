@@ -89,7 +89,13 @@ pub fn reconstruct_recording(
     let mut tracker = Tracker::new(prepared, config.tracker);
     if live {
         let mut clock = StrideClock::new(prepared);
+        let mut losses = losses_of_sight(recordings).peekable();
         for (frame, measured) in frames.iter().zip(&mut measured) {
+            let ends = frame.iter().flatten().map(|heard| heard.frame.time_secs);
+            let end_secs = ends.fold(f64::MIN, f64::max);
+            while losses.next_if(|loss| *loss <= end_secs).is_some() {
+                tracker.stand();
+            }
             let stride = clock.step(frame);
             if let Some(measured) = measured {
                 measured.stride = stride;
@@ -182,6 +188,18 @@ fn frames_of(prepared: &Prepared, recordings: &[ImuRecording]) -> Vec<SensorFram
             })
         })
         .collect()
+}
+
+/// Times at which the samples of the only sensor become unusable.
+fn losses_of_sight(recordings: &[ImuRecording]) -> impl Iterator<Item = f64> {
+    let samples = recordings.iter().flat_map(|recording| &recording.samples);
+    let mut was_lost = false;
+    samples.filter_map(move |sample| {
+        let is_lost = sample.is_stand_in();
+        let begins = is_lost && !was_lost;
+        was_lost = is_lost;
+        begins.then_some(sample.time_secs)
+    })
 }
 
 /// Sets the contacts of feet with sensors from their recordings as wholes.

@@ -225,10 +225,16 @@ impl Reconstructor {
         let sees = |n: usize| n != sensor && self.sensors[n].sight() == Sight::Sees;
         let other_sees = (0..used).any(sees);
         let own = &mut self.sensors[sensor];
-        if own.push(sample, other_sees) {
+        let changed = own.push(sample, other_sees);
+        let sees = own.sight() == Sight::Sees;
+        if changed {
             self.forget_samples();
+            // A step that ends with a foot at rest would go on with one.
+            if !sees && !other_sees {
+                self.tracker.stand();
+            }
         }
-        if self.sensors[sensor].sight() == Sight::Sees {
+        if sees {
             self.travel.push(sensor, sample);
         }
         self.catch_up();

@@ -112,6 +112,9 @@ pub struct Tracker {
 /// Segments that held less than this are dropped.
 const LEAST_MASS: f32 = 2e-5;
 
+/// With less than this probability of standing it is not known how somebody stands.
+const LEAST_STANDING: f32 = 1e-3;
+
 impl Tracker {
     /// Every frame is as probable as any other.
     pub fn new(prepared: &Arc<Prepared>, config: TrackerConfig) -> Self {
@@ -151,6 +154,40 @@ impl Tracker {
         self.turn = 0;
         (self.log_likelihood, self.log_density) = (0.0, 0.0);
         self.strangeness = Strangeness::UNKNOWN;
+        self.weigh_segments();
+    }
+
+    /// Takes the person to stand: as they probably do, or in whichever way people do. Nothing changes for a model of people who never stand.
+    pub(crate) fn stand(&mut self) {
+        let prepared = Arc::clone(&self.prepared);
+        let model = &prepared.model;
+        let stands = |n: usize| {
+            model.phases[usize::from(model.segments[n].phase)].behaviour == Behaviour::Stand
+        };
+        let count = model.segments.len();
+        let frames = |n: usize| prepared.frames_of(n);
+        let standing: usize = (0..count)
+            .filter(|&n| stands(n))
+            .map(|n| frames(n).len())
+            .sum();
+        if standing == 0 {
+            return;
+        }
+        let is_known = self.behaviours[Behaviour::Stand.index()] > LEAST_STANDING;
+        self.active.clear();
+        for n in 0..count {
+            let own = &mut self.probability[frames(n)];
+            if !stands(n) {
+                own.fill(0.0);
+            } else if !is_known {
+                own.fill(1.0 / standing as f32);
+            }
+            if own.iter().any(|p| *p > 0.0) {
+                self.active.push(n as u32);
+            }
+        }
+        let sum: f32 = self.probability.iter().sum();
+        self.probability.iter_mut().for_each(|p| *p /= sum);
         self.weigh_segments();
     }
 

@@ -22,6 +22,7 @@ pub mod fine_motion;
 pub mod imu;
 pub mod job;
 pub mod jumping;
+mod level_heads;
 pub mod model_file;
 pub mod normalise;
 pub mod progress;

@@ -33,8 +33,7 @@ pub fn learn_running(
 ) -> Result<GaitModel, TrainError> {
     let clips: Vec<Recording> = clips
         .iter()
-        .cloned()
-        .map(Recording::running)
+        .map(|clip| clip.with_head_as_recorded().running())
         .filter(|clip| !clip.walks.is_empty())
         .collect();
     let [many, few] = few::split(clips, ENOUGH_STEPS);

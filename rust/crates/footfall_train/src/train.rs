@@ -7,6 +7,7 @@ use crate::differences;
 use crate::encoded::{EncodedCorpus, steady_part};
 use crate::error::TrainError;
 use crate::fine_motion;
+use crate::level_heads;
 use crate::progress::{Progress, advance};
 use crate::sequence::Sequence;
 use crate::walker_adaptive::{self, WalkerAdaptive, WalkerTransform};
@@ -59,7 +60,8 @@ pub fn train_average(
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<Trained, TrainError> {
-    let encoded = EncodedCorpus::of(clips, config)?;
+    let recorded: Vec<Recording> = clips.iter().map(Recording::with_head_as_recorded).collect();
+    let encoded = EncodedCorpus::of(&recorded, config)?;
     let (corpus, _) = encoded.steady();
     if corpus.is_empty() {
         return Err(TrainError::NoSteps);
@@ -112,6 +114,7 @@ pub fn train_average(
     };
     advance(progress, "fine motion", 0, 0)?;
     model.fine = fine_motion::estimate(&model, &corpus, &boundaries, &differences.walker_weights)?;
+    level_heads::level(&mut model, clips);
     Ok(Trained {
         model,
         log_likelihoods: walk.log_likelihoods.clone(),

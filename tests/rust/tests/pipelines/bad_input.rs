@@ -20,6 +20,9 @@ const DT_SECS: f64 = 1.0 / 60.0;
 /// Faults begin so long after the recording, seconds.
 const FAULTY_SECS: f64 = 6.0;
 
+/// Time within which a wearer who is not seen any more stands, seconds.
+const STANDS_SECS: f64 = 0.5;
+
 /// No joint may turn faster, rad/s, and no body move faster over the ground, m/s.
 const MOST_RADPS: f32 = 20.5;
 const MOST_MPS: f32 = 7.0;
@@ -40,6 +43,8 @@ struct Driven {
     reported: Vec<(&'static str, f64)>,
     /// When the body moved first, seconds after the fault.
     moves_secs: f64,
+    /// When it moved last.
+    moved_secs: f64,
     /// Frames, and those in which it stands.
     frames: usize,
     stood: usize,
@@ -82,6 +87,7 @@ fn drive(prepared: &Arc<Prepared>, recording: &ImuRecording, mounting: Quat) -> 
         fastest_mps: 0.0,
         reported: Vec::new(),
         moves_secs: f64::INFINITY,
+        moved_secs: 0.0,
         frames: 0,
         stood: 0,
         last_turn: 0.0,
@@ -110,6 +116,7 @@ fn drive(prepared: &Arc<Prepared>, recording: &ImuRecording, mounting: Quat) -> 
         driven.frames += 1;
         if body.behaviour() != Behaviour::Stand {
             driven.moves_secs = driven.moves_secs.min(secs - FAULTY_SECS);
+            driven.moved_secs = secs - FAULTY_SECS;
         }
         driven.stood += usize::from(body.behaviour() == Behaviour::Stand);
         if secs > recording.duration_secs() - 1.0 {
@@ -215,6 +222,8 @@ fn assert_faults_are_borne(prepared: &Arc<Prepared>, recording: &ImuRecording, m
         );
         if stands {
             assert_eq!(driven.behaviour, Behaviour::Stand, "{what}");
+            let after_secs = driven.moved_secs - reported.unwrap_or_default();
+            assert!(after_secs < STANDS_SECS, "{what}: moves {after_secs} s on");
             // Knees of who walks turn by 7 rad/s.
             assert!(driven.last_turn < 2.0, "{what}: {} rad/s", driven.last_turn);
         } else {

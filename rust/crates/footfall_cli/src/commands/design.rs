@@ -3,7 +3,7 @@
 mod corpus_run;
 mod reference;
 
-use crate::motion_input::{FitArgs, read_recording};
+use crate::motion_input::{SkeletonArgs, read_recording};
 use crate::output;
 use anyhow::{Context as _, Result, bail};
 use footfall_core::Clip;
@@ -43,7 +43,7 @@ pub(crate) struct DesignArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Minimum total number of steps from a corpus
     #[arg(long, default_value_t = 24, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     steps: u32,

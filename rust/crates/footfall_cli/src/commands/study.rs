@@ -1,7 +1,7 @@
 //! `footfall study`: ask people.
 
 use crate::corpus_pair::CorpusPair;
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use crate::output;
 use crate::study::{Excerpt, StudyOptions, excerpts, page};
 use anyhow::{Context as _, Result, ensure};
@@ -21,7 +21,7 @@ pub(crate) struct StudyArgs {
     #[command(flatten)]
     corpora: CorpusPair,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Output file for the page
     #[arg(short, long, value_name = "STUDY.html")]
     output: PathBuf,

@@ -6,9 +6,9 @@ use crate::contacts::{ContactConfig, detect_contacts};
 use crate::head_carriage::HeadCarriage;
 use crate::hip_centres::{FARTHEST, Origin, PHASES, STRIDE_SHARES, Stance, WalkingEvidence};
 use crate::steps::segment_walks;
-use footfall_core::rotation::{heading, wrap_angle};
-use footfall_core::{Clip, Joint, ModelPose, Side, Skeleton, StepPosition};
-use glam::{Quat, Vec3};
+use footfall_core::rotation::{from_heading, heading, wrap_angle};
+use footfall_core::{Clip, Joint, ModelPose, Pose, Side, Skeleton, StepPosition};
+use glam::{Quat, Vec3, Vec4};
 
 /// Plain walking: seconds a stride, metres a second of the canonical body; the most that the way may lead aside and the body
 /// may turn within a stride, radians.
@@ -106,17 +106,21 @@ fn plain_strides(source: &SourceMotion, clip: &Clip) -> Vec<(Side, usize, usize)
     strides
 }
 
-/// Mean pitch of neck and head over a stride.
+/// Mean attitude of neck and head over a stride, seen along its way.
 fn head_carriage(clip: &Clip, first: usize, end: usize) -> HeadCarriage {
     let frames = &clip.poses[first..end.min(clip.poses.len())];
-    let mut mean = HeadCarriage::default();
-    for pose in frames {
-        let body = ModelPose::of(&clip.skeleton, pose);
-        let down = |joint| -(body.rotation(joint) * Vec3::Z).y.asin().to_degrees();
-        mean.neck_deg += down(Joint::Neck) / frames.len() as f32;
-        mean.head_deg += down(Joint::Head) / frames.len() as f32;
-    }
-    mean
+    let place = |pose: Option<&Pose>| pose.map_or(Vec3::ZERO, |pose| pose.root_position);
+    let way = place(frames.last()) - place(frames.first());
+    let along_way = from_heading(-way.x.atan2(way.z));
+    let mean = |joint: Joint| {
+        let rotations = frames.iter().map(|pose| {
+            let turned = along_way * ModelPose::of(&clip.skeleton, pose).rotation(joint);
+            // Of the two quaternions of a rotation the one near no turn.
+            Vec4::from(turned) * turned.w.signum()
+        });
+        Quat::from_vec4(rotations.sum::<Vec4>().normalize_or(Vec4::W))
+    };
+    HeadCarriage::of_rotations(mean(Joint::Neck), mean(Joint::Head))
 }
 
 /// Returns true when a stride is plain walking straight ahead.

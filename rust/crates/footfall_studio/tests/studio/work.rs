@@ -62,7 +62,7 @@ fn corrected_contacts_are_saved_beside_the_clip_and_taken_by_training() {
     let mut window = world.window(std::slice::from_ref(&path));
     click(&mut window, "Labels");
     // Drags the end of the first stance of the left foot to the right.
-    let (from, to) = (Pos2::new(450.5, 466.0), Pos2::new(470.0, 466.0));
+    let (from, to) = (Pos2::new(448.5, 466.0), Pos2::new(470.0, 466.0));
     window.hover_at(from);
     window.run_steps(2);
     window.drag_at(from);

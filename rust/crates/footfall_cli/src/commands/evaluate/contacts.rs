@@ -2,7 +2,7 @@
 
 mod table;
 
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use crate::output;
 use anyhow::Result;
 use footfall_motion::corpus::Where;
@@ -44,7 +44,7 @@ pub(crate) struct ContactsArgs {
     #[arg(long, requires = "corpus")]
     ablate: bool,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Tolerance for switches and events of sensors, milliseconds
     #[arg(long, default_value_t = ContactsRequest::default().tolerance_ms)]
     tolerance: f64,

@@ -4,7 +4,7 @@ mod table;
 
 use crate::commands::imu::{KeptArgs, parse_site};
 use crate::commands::train::TrainingProgress;
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
@@ -40,7 +40,7 @@ pub(crate) struct ImuArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Site of the sensor; twice for two sensors [default: the foot, foot and hand, and each site of the paper's figure 10]
     #[arg(long = "site", value_parser = parse_site)]
     sites: Vec<Site>,

@@ -1,7 +1,7 @@
 //! A model, dressed in styles, and the captured recordings that it is judged beside.
 
 use crate::commands::synth::{StyleArg, dressed};
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use anyhow::Result;
 use footfall_model::GaitModel;
 use footfall_motion::corpus::{Corpus, Where};
@@ -23,7 +23,7 @@ pub(super) struct JudgedArgs {
     #[arg(long = "where", value_name = "COLUMN=VALUE")]
     conditions: Vec<Where>,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
 }
 
 impl JudgedArgs {

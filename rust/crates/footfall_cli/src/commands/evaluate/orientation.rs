@@ -4,7 +4,7 @@ mod filters;
 mod report;
 
 use crate::commands::imu::parse_site;
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use crate::output;
 use anyhow::Result;
 use filters::FILTERS;
@@ -52,7 +52,7 @@ pub(crate) struct OrientationArgs {
     #[arg(long, value_parser = parse_site, default_value = "right_foot")]
     site: Site,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,

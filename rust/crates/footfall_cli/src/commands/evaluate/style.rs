@@ -3,7 +3,7 @@
 mod table;
 
 use crate::corpus_pair::CorpusPair;
-use crate::motion_input::FitArgs;
+use crate::motion_input::SkeletonArgs;
 use crate::output;
 use anyhow::{Context as _, Result};
 use clap::ValueEnum;
@@ -24,7 +24,7 @@ pub(crate) struct StyleArgs {
     #[command(flatten)]
     corpora: CorpusPair,
     #[command(flatten)]
-    fit: FitArgs,
+    fit: SkeletonArgs,
     /// Split that keeps real strides unseen: each take in turn, or each half of every recording [default: takes if every style has two]
     #[arg(long, value_enum)]
     split: Option<SplitArg>,
