@@ -61,6 +61,8 @@ pub struct Retargeted {
     pub first_frame: usize,
     /// Findings on the way.
     pub report: RetargetReport,
+    /// Rotations of neck and head before they were corrected, frame by frame; empty where they were not.
+    pub recorded_heads: Vec<[Quat; 2]>,
 }
 
 impl Retargeted {
@@ -79,13 +81,22 @@ impl Retargeted {
                 repeats: 1,
                 fit: FitFinding::without_evidence(HipVerdict::OwnBody),
             },
+            recorded_heads: Vec::new(),
         }
     }
 
-    /// Turns neck and head back to where the file has them.
+    /// Turns neck and head back to where the file has them, to the bit unless the clip was resampled or unrolled.
     pub(crate) fn leave_head(&mut self) {
-        if let Some(head) = self.report.fit.head.take() {
+        let Some(head) = self.report.fit.head.take() else {
+            return;
+        };
+        if self.recorded_heads.len() != self.clip.poses.len() {
             turn_head(&mut self.clip, head.turns().map(|turn| turn.inverse()));
+            return;
+        }
+        for (pose, [neck, head]) in self.clip.poses.iter_mut().zip(&self.recorded_heads) {
+            pose.rotations[Joint::Neck.index()] = *neck;
+            pose.rotations[Joint::Head.index()] = *head;
         }
     }
 }
@@ -196,7 +207,12 @@ impl Placed {
             legs::correct_legs(&mut self.source, correction);
             self.body = embody(&self.source)?;
         }
+        let mut recorded_heads = Vec::new();
         if let Some(head) = &fit.head {
+            let poses = self.body.clip.poses.iter();
+            let heads =
+                poses.map(|pose| [Joint::Neck, Joint::Head].map(|joint| pose.rotation(joint)));
+            recorded_heads = heads.collect();
             turn_head(&mut self.body.clip, head.turns());
         }
         let Embodied {
@@ -223,6 +239,7 @@ impl Placed {
                 repeats: 1,
                 fit,
             },
+            recorded_heads,
         })
     }
 }

@@ -11,27 +11,28 @@ use footfall_model::{GaitModel, StateModel};
 use footfall_motion::recording::Recording;
 use glam::{Quat, Vec3};
 
-/// Turns neck and head of every state by the mean of what was found about the people in recordings. Each person counts once.
+/// Turns neck and head of every state by the mean of what was found about the people in recordings, each as often as strides were found.
 pub(crate) fn level(model: &mut GaitModel, recordings: &[Recording]) {
-    let mut people: Vec<(&str, [f32; 2])> = Vec::new();
+    let mut seen: Vec<&str> = Vec::new();
+    let (mut strides, mut turns) = (0.0, [0.0_f32; 2]);
     for recording in recordings {
         let name = recording.subject();
-        if people.iter().all(|(known, _)| *known != name) {
-            let found = recording.retargeted.report.fit.head;
-            let turns = found.map_or([0.0; 2], |found| {
-                let (recorded, corrected) = (found.recorded, found.corrected);
-                [
-                    corrected.neck.x - recorded.neck.x,
-                    corrected.head.x - recorded.head.x,
-                ]
-            });
-            people.push((name, turns));
+        if seen.contains(&name) {
+            continue;
+        }
+        seen.push(name);
+        if let Some(found) = recording.retargeted.report.fit.head {
+            let (recorded, corrected) = (found.recorded, found.corrected);
+            let own = found.strides as f32;
+            strides += own;
+            turns[0] += own * (corrected.neck.x - recorded.neck.x);
+            turns[1] += own * (corrected.head.x - recorded.head.x);
         }
     }
-    let [neck, head] = [0, 1].map(|joint| {
-        let degrees: f32 = people.iter().map(|(_, turns)| turns[joint]).sum();
-        Quat::from_rotation_x((degrees / people.len().max(1) as f32).to_radians())
-    });
+    if strides <= 0.0 {
+        return;
+    }
+    let [neck, head] = turns.map(|degrees| Quat::from_rotation_x((degrees / strides).to_radians()));
     for state in model.steps.iter_mut().flat_map(|step| &mut step.states) {
         turn(state, Joint::Neck, Quat::IDENTITY, neck);
         turn(state, Joint::Head, neck.inverse(), head);

@@ -346,6 +346,7 @@ fn designed(recording: &Recording, sheet: &StyleSheet, seed: u64) -> Result<Reco
         clip,
         first_frame: 0,
         report: recording.retargeted.report.clone(),
+        recorded_heads: Vec::new(),
     }))
 }
 
