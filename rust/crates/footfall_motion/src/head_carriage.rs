@@ -79,8 +79,8 @@ const MANNERS_DEG: f32 = 16.0;
 impl Attitude {
     /// The most probable attitude of the person where the mean of a person's walks is `recorded`.
     fn of_person(&self, recorded: Vec3, manner: Manner) -> Vec3 {
-        let [usual, usual_fit] = [self.people.0, self.fit.0].map(|mean| mean.to_array());
-        let [people, fit] = [self.people.1, self.fit.1].map(|spread| spread.to_array());
+        let [usual, usual_fit] = [self.people.0, self.fit.0].map(Vec3::to_array);
+        let [people, fit] = [self.people.1, self.fit.1].map(Vec3::to_array);
         let recorded = recorded.to_array();
         Vec3::from_array(array::from_fn(|axis| {
             let manners = if axis == 0 && manner != Manner::Plain {
@@ -129,7 +129,7 @@ pub fn find_head_carriage(recordings: &[&WalkingEvidence], manner: Manner) -> Op
 impl HeadFinding {
     /// Turns of neck and head, each in its own axes, that take the error away.
     pub(crate) fn turns(&self) -> [Quat; 2] {
-        let [recorded, corrected] = [self.recorded, self.corrected].map(|mean| mean.rotations());
+        let [recorded, corrected] = [&self.recorded, &self.corrected].map(HeadCarriage::rotations);
         array::from_fn(|joint| recorded[joint].inverse() * corrected[joint])
     }
 }

@@ -91,7 +91,7 @@ impl Retargeted {
             return;
         };
         if self.recorded_heads.len() != self.clip.poses.len() {
-            turn_head(&mut self.clip, head.turns().map(|turn| turn.inverse()));
+            turn_head(&mut self.clip, head.turns().map(Quat::inverse));
             return;
         }
         for (pose, [neck, head]) in self.clip.poses.iter_mut().zip(&self.recorded_heads) {
