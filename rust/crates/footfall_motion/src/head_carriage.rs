@@ -79,8 +79,8 @@ const MANNERS_DEG: f32 = 16.0;
 impl Attitude {
     /// The most probable attitude of the person where the mean of a person's walks is `recorded`.
     fn of_person(&self, recorded: Vec3, manner: Manner) -> Vec3 {
-        let [usual, usual_fit] = [self.people.0, self.fit.0].map(Vec3::to_array);
-        let [people, fit] = [self.people.1, self.fit.1].map(Vec3::to_array);
+        let [usual, usual_fit] = [self.people.0, self.fit.0].map(|each| each.to_array());
+        let [people, fit] = [self.people.1, self.fit.1].map(|each| each.to_array());
         let recorded = recorded.to_array();
         Vec3::from_array(array::from_fn(|axis| {
             let manners = if axis == 0 && manner != Manner::Plain {
