@@ -8,7 +8,7 @@
 use crate::check::ModelError;
 use crate::layout::FEATURE_COUNT;
 use crate::provenance::Provenance;
-use footfall_core::{PhaseKind, Site, Skeleton};
+use footfall_core::{Behaviour, PhaseKind, Site, Skeleton};
 
 /// Numbers that one sensor gives in a frame: angular rate (rad/s), specific force (m/s²) and up, each x, y, z in the site's axes.
 pub const SENSOR_COUNT: usize = 9;
@@ -90,6 +90,11 @@ impl ImuModel {
     /// Numbers that all sensors give in a frame.
     pub fn sensor_width(&self) -> usize {
         SENSOR_COUNT * self.sites.len()
+    }
+
+    /// Behaviour that a segment shows.
+    pub fn behaviour_of(&self, segment: Segment) -> Behaviour {
+        self.phases[usize::from(segment.phase)].behaviour
     }
 
     /// Frames of all segments.

@@ -8,8 +8,8 @@ mod cycle;
 mod in_place;
 
 use crate::bvh::BvhFile;
-use crate::hip_centres::WalkingEvidence;
 use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget_with_way};
+use crate::walking_evidence::WalkingEvidence;
 
 /// Puts a clip of a game on the canonical body: one that walks in place travels, and loops are found. Frames are the file's.
 ///

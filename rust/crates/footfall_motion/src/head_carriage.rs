@@ -8,43 +8,10 @@
 //! This module separates the error from the person: the mean of a person's plain walks is the sum of both, and each has a
 //! known spread. How a neck and a head *move* is never changed.
 
-use crate::hip_centres::{Origin, WalkingEvidence};
-use crate::skeleton_fit::Manner;
-use glam::{EulerRot, Quat, Vec3};
+use crate::walking_evidence::{HeadCarriage, Manner, WalkingEvidence};
+use glam::{Quat, Vec3};
 use std::array;
 use std::fmt::{Display, Formatter, Result};
-
-/// Mean attitude of neck and head in plain walking, beside one that stands upright and looks where the way goes: degrees forwards and down
-/// (x), to the left (y) and towards the right shoulder (z), turned in the order y, x, z.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct HeadCarriage {
-    /// The neck.
-    pub neck: Vec3,
-    /// The head.
-    pub head: Vec3,
-}
-
-impl HeadCarriage {
-    /// Angles of rotations relative to the way ahead.
-    pub(crate) fn of_rotations(neck: Quat, head: Quat) -> Self {
-        let degrees = |rotation: Quat| {
-            let (y, x, z) = rotation.to_euler(EulerRot::YXZ);
-            Vec3::new(x, y, z).map(f32::to_degrees)
-        };
-        Self {
-            neck: degrees(neck),
-            head: degrees(head),
-        }
-    }
-
-    /// The rotations of neck and head relative to the way ahead.
-    pub(crate) fn rotations(&self) -> [Quat; 2] {
-        [self.neck, self.head].map(|degrees| {
-            let [x, y, z] = degrees.map(f32::to_radians).to_array();
-            Quat::from_euler(EulerRot::YXZ, y, x, z)
-        })
-    }
-}
 
 /// Decision about a person's neck and head.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -95,15 +62,8 @@ impl Attitude {
     }
 }
 
-/// Finds the carriage of one person from all recordings of one skeleton. None for a skeleton that nobody fitted to markers, and without
-/// strides of walking.
+/// Finds the carriage of one person from all recordings of one skeleton. None without evidence of it.
 pub fn find_head_carriage(recordings: &[&WalkingEvidence], manner: Manner) -> Option<HeadFinding> {
-    let is_fitted = |recording: &&WalkingEvidence| {
-        recording.origin == Origin::MarkerFit && !recording.is_own_body
-    };
-    if !recordings.iter().all(is_fitted) {
-        return None;
-    }
     let heads: Vec<HeadCarriage> = recordings
         .iter()
         .flat_map(|recording| recording.heads.iter().copied())

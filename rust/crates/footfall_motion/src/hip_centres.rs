@@ -16,9 +16,7 @@ pub mod reference;
 mod stances;
 mod summary;
 
-pub use reference::{FARTHEST, PHASES, STRIDE_SHARES};
-
-use crate::head_carriage::HeadCarriage;
+use crate::walking_evidence::{Origin, WalkingEvidence};
 use footfall_core::Side;
 use glam::{Vec2, Vec3};
 use reference::Gait;
@@ -57,38 +55,7 @@ impl HipCorrection {
     }
 }
 
-/// One stance of a walk: the hip joint's place over the ankle.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stance {
-    /// The leg that stands.
-    pub side: Side,
-    /// From ankle to hip joint in the axes of the pelvis, in leg lengths, at each of [`STRIDE_SHARES`].
-    pub hip_from_ankle: [Vec3; PHASES],
-}
-
-/// Source of a skeleton, as far as its joints show.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Origin {
-    /// A skeleton that may have been made in any way: only strong evidence moves its joints.
-    #[default]
-    Unknown,
-    /// A skeleton of the family of the CMU library's, fitted to markers by a procedure that is known to misplace all hip
-    /// joints: they are corrected unless there is strong evidence against it.
-    MarkerFit,
-}
-
 impl Origin {
-    /// The origin of a skeleton with joints of these names. The family has joints between pelvis and thighs of its own.
-    pub fn of<'a>(names: &(impl Iterator<Item = &'a str> + Clone)) -> Self {
-        let has = |own: &str| names.clone().any(|name| name.eq_ignore_ascii_case(own));
-        let is_of_family = has("LHipJoint") && has("RHipJoint");
-        if is_of_family {
-            Self::MarkerFit
-        } else {
-            Self::Unknown
-        }
-    }
-
     /// Logarithm of the odds that hip joints are misplaced, before the knees are seen.
     const fn ln_prior_odds(self) -> f64 {
         match self {
@@ -103,36 +70,6 @@ impl Origin {
             Self::Unknown => 3,
             Self::MarkerFit => 2,
         }
-    }
-}
-
-/// A skeleton's legs, stances and carriage of the head, as a recording shows them.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct WalkingEvidence {
-    /// Thigh and shank of the left and of the right leg, in leg lengths.
-    pub segments: [[f32; 2]; 2],
-    /// Lengths of all bones in leg lengths: persons differ in them.
-    pub bones: Vec<f32>,
-    /// True when the body is the canonical one, which carries corrected or generated motion.
-    pub is_own_body: bool,
-    /// Source of the skeleton.
-    pub origin: Origin,
-    /// Stances of plain walking straight ahead.
-    pub stances: Vec<Stance>,
-    /// Mean carriage of the head over each stride of plain walking.
-    pub heads: Vec<HeadCarriage>,
-}
-
-impl WalkingEvidence {
-    /// Returns true when two recordings have one skeleton, at whatever scale.
-    pub fn shares_skeleton_with(&self, other: &Self) -> bool {
-        const SAME: f32 = 0.004;
-        self.bones.len() == other.bones.len()
-            && self
-                .bones
-                .iter()
-                .zip(&other.bones)
-                .all(|(a, b)| (a - b).abs() < SAME)
     }
 }
 

@@ -29,3 +29,4 @@ pub mod skeleton_fit;
 pub mod steps;
 pub mod switches;
 pub mod virtual_imu;
+pub mod walking_evidence;

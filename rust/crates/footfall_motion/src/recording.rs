@@ -5,11 +5,11 @@ use crate::contact_file::{ContactFile, ContactFileError};
 use crate::contacts::{ContactConfig, Contacts, detect_contacts};
 use crate::game_clip;
 use crate::gltf::{self, GltfError};
-use crate::hip_centres::WalkingEvidence;
 use crate::index_row::IndexRow;
 use crate::retarget::{RetargetError, RetargetOptions, Retargeted, retarget, retarget_as_recorded};
 use crate::skeletal::SkeletalMotion;
 use crate::steps::{Walk, running_parts, segment_walks};
+use crate::walking_evidence::WalkingEvidence;
 use footfall_core::Clip;
 use std::path::{Path, PathBuf};
 

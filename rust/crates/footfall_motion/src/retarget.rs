@@ -19,8 +19,9 @@ pub use joint_map::parse_joint_map;
 pub use report::{RetargetError, RetargetReport};
 
 use crate::bvh::BvhFile;
-use crate::hip_centres::{HipVerdict, Origin, WalkingEvidence};
-use crate::skeleton_fit::{FitFinding, Manner, find_fit};
+use crate::hip_centres::HipVerdict;
+use crate::skeleton_fit::{FitFinding, find_fit};
+use crate::walking_evidence::{Manner, Origin, WalkingEvidence};
 use footfall_core::rotation::{from_heading, heading, shortest_arc};
 use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, Skeleton};
 use glam::{Quat, Vec3};

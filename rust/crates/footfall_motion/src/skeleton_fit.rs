@@ -1,19 +1,9 @@
 //! Errors of a person's skeleton that are the same in all recordings: places of the hip joints and carriage of the head.
 
 use crate::head_carriage::{HeadFinding, find_head_carriage};
-use crate::hip_centres::{HipFinding, HipVerdict, WalkingEvidence, find_hip_centres};
+use crate::hip_centres::{HipFinding, HipVerdict, find_hip_centres};
+use crate::walking_evidence::{Manner, WalkingEvidence};
 use std::fmt::{self, Display, Formatter};
-
-/// Manner of walking in a recording, as far as it is known.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Manner {
-    /// Plain walking: labelled as such.
-    Plain,
-    /// Any: nobody labelled it.
-    Unlabelled,
-    /// An acted style: evidence of no skeleton.
-    Acted,
-}
 
 /// Findings about a person's skeleton.
 #[derive(Clone, Copy, Debug, PartialEq)]

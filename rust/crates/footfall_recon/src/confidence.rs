@@ -117,8 +117,8 @@ pub(crate) fn standing_rows<'a>(
     width: usize,
 ) -> impl Iterator<Item = &'a [f32]> {
     let stands = model.segments.iter().flat_map(|segment| {
-        let behaviour = model.phases[usize::from(segment.phase)].behaviour;
-        core::iter::repeat_n(behaviour == Behaviour::Stand, usize::from(segment.frames))
+        let stands = model.behaviour_of(*segment) == Behaviour::Stand;
+        core::iter::repeat_n(stands, usize::from(segment.frames))
     });
     let rows = rows.chunks_exact(width).zip(stands);
     rows.filter_map(|(row, stands)| stands.then_some(row))

@@ -161,33 +161,36 @@ impl Tracker {
     pub(crate) fn stand(&mut self) {
         let prepared = Arc::clone(&self.prepared);
         let model = &prepared.model;
-        let stands = |n: usize| {
-            model.phases[usize::from(model.segments[n].phase)].behaviour == Behaviour::Stand
-        };
-        let count = model.segments.len();
+        let stands = |n: usize| model.behaviour_of(model.segments[n]) == Behaviour::Stand;
+        let segments = 0..model.segments.len();
         let frames = |n: usize| prepared.frames_of(n);
-        let standing: usize = (0..count)
-            .filter(|&n| stands(n))
-            .map(|n| frames(n).len())
-            .sum();
+        let standing = segments.clone().filter(|&n| stands(n));
+        let standing: usize = standing.map(|n| frames(n).len()).sum();
         if standing == 0 {
             return;
         }
         let is_known = self.behaviours[Behaviour::Stand.index()] > LEAST_STANDING;
-        self.active.clear();
-        for n in 0..count {
-            let own = &mut self.probability[frames(n)];
+        for n in segments {
             if !stands(n) {
-                own.fill(0.0);
+                self.probability[frames(n)].fill(0.0);
             } else if !is_known {
-                own.fill(1.0 / standing as f32);
-            }
-            if own.iter().any(|p| *p > 0.0) {
-                self.active.push(n as u32);
+                self.probability[frames(n)].fill(1.0 / standing as f32);
             }
         }
         let sum: f32 = self.probability.iter().sum();
         self.probability.iter_mut().for_each(|p| *p /= sum);
+        self.look_at_probable();
+    }
+
+    /// Makes the segments that hold some probability the active ones, and weighs them.
+    fn look_at_probable(&mut self) {
+        self.active.clear();
+        for n in 0..self.prepared.model.segments.len() {
+            let own = &self.probability[self.prepared.frames_of(n)];
+            if own.iter().any(|p| *p > 0.0) {
+                self.active.push(n as u32);
+            }
+        }
         self.weigh_segments();
     }
 

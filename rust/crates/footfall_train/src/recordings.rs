@@ -5,7 +5,7 @@ use crate::progress::{Progress, advance};
 use footfall_motion::corpus::{PersonFile, find_people, options_of};
 use footfall_motion::recording::Recording;
 use footfall_motion::retarget::RetargetOptions;
-use footfall_motion::skeleton_fit::Manner;
+use footfall_motion::walking_evidence::Manner;
 use std::path::PathBuf;
 
 /// Reads files; each comes with the name of who walks in it. [Skeletons](footfall_motion::skeleton_fit) are put right person by person.

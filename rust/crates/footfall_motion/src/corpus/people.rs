@@ -6,10 +6,10 @@
 //! taken for one.
 
 use super::IndexRow;
-use crate::hip_centres::WalkingEvidence;
 use crate::recording::read_as_recorded;
 use crate::retarget::{RetargetOptions, Retargeted, SkeletonFit};
-use crate::skeleton_fit::{FitFinding, Manner, find_fit};
+use crate::skeleton_fit::{FitFinding, find_fit};
+use crate::walking_evidence::{Manner, WalkingEvidence};
 use rayon::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::iter;

@@ -1,7 +1,8 @@
 //! The most probable correction, and how much more probable it makes what was recorded.
 
-use super::reference::{FLEXION_DEG, Gait, PHASES, covariance_of_placing};
+use super::reference::{FLEXION_DEG, Gait, covariance_of_placing};
 use super::stances::{COUNT, Legs, Parameters};
+use crate::walking_evidence::PHASES;
 use nalgebra::{DMatrix, DVector, Dyn, OMatrix, SMatrix, SVector, U1};
 
 /// Errors of fits to markers, in leg lengths: mean and standard deviation of how far hip joints have to move up and

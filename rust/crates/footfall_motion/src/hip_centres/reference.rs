@@ -4,21 +4,10 @@
 //! 20°, terminal stance 5 to 12°) and those of recordings whose hip joints were placed well; spreads as published, less
 //! what placing joints by markers adds to them.
 
+use crate::walking_evidence::{PHASES, STRIDE_SHARES};
 use nalgebra::DMatrix;
 
-/// Points of a stance that are compared.
-pub const PHASES: usize = 12;
-
-/// Their times: shares of the stride that begins with the foot's own initial contact. Later the knee bends for the swing,
-/// and hardly constrains the hip. The time of [`FARTHEST`] is where it is usually.
-pub const STRIDE_SHARES: [f32; PHASES] = [
-    -0.04, 0.0, 0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.45, 0.5,
-];
-
-/// The point at which the leg reaches farthest about its landing, whenever that is: there a joint that is placed too high shows first.
-pub const FARTHEST: usize = 0;
-
-/// Flexion at each of them, degrees.
+/// Flexion at each of [`STRIDE_SHARES`], degrees.
 pub(super) const FLEXION_DEG: [f64; PHASES] = [
     4.0, 5.0, 11.5, 17.0, 19.5, 18.5, 15.5, 12.0, 9.8, 9.2, 10.7, 15.0,
 ];

@@ -1,8 +1,9 @@
 //! Legs of one person over many stances: mean flexion of the knees for any place of the hip joints.
 
 use super::leg::flexion;
-use super::reference::{KneeCurve, PHASES};
+use super::reference::KneeCurve;
 use super::{HipCorrection, WalkingEvidence};
+use crate::walking_evidence::PHASES;
 use footfall_core::Side;
 use glam::{DVec3, Vec2, Vec3};
 use nalgebra::{DMatrix, DVector, SVector};

@@ -2,6 +2,7 @@
 
 use super::reference::FLEXION_DEG;
 use super::*;
+use crate::walking_evidence::{PHASES, STRIDE_SHARES, Stance};
 
 const SEGMENTS: [[f32; 2]; 2] = [[0.49, 0.51], [0.49, 0.51]];
 

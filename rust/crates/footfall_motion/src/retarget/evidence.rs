@@ -3,9 +3,10 @@
 use super::rest::rest_rotations;
 use super::source::{SourceFrame, SourceMotion};
 use crate::contacts::{ContactConfig, detect_contacts};
-use crate::head_carriage::HeadCarriage;
-use crate::hip_centres::{FARTHEST, Origin, PHASES, STRIDE_SHARES, Stance, WalkingEvidence};
 use crate::steps::segment_walks;
+use crate::walking_evidence::{
+    FARTHEST, HeadCarriage, Origin, PHASES, STRIDE_SHARES, Stance, WalkingEvidence,
+};
 use footfall_core::rotation::{from_heading, heading, wrap_angle};
 use footfall_core::{Clip, Joint, ModelPose, Pose, Side, Skeleton, StepPosition};
 use glam::{Quat, Vec3, Vec4};
@@ -30,33 +31,31 @@ pub(super) fn walking_evidence(
     clip: &Clip,
     origin: Origin,
 ) -> WalkingEvidence {
-    let is_own_body = is_canonical(source);
-    let strides = if is_own_body {
-        Vec::new()
-    } else {
-        plain_strides(source, clip)
-    };
-    let pelvis = rest_rotations(source)[Joint::Hips.index()].inverse();
-    WalkingEvidence {
+    let mut evidence = WalkingEvidence {
         segments: Side::BOTH.map(|side| {
             [side.upper_leg(), side.lower_leg()]
                 .map(|joint| source.mean_length(joint) / source.leg_length)
         }),
         bones: bones(|joint| source.rest.position(joint), source.leg_length),
-        is_own_body,
+        is_own_body: is_canonical(source),
         origin,
-        stances: strides
-            .iter()
-            .map(|&(side, first, end)| Stance {
-                side,
-                hip_from_ankle: hips_over_stance(source, pelvis, side, first, end),
-            })
-            .collect(),
-        heads: strides
-            .iter()
-            .map(|&(_, first, end)| head_carriage(clip, first, end))
-            .collect(),
+        stances: Vec::new(),
+        heads: Vec::new(),
+    };
+    if evidence.is_own_body {
+        return evidence;
     }
+    let pelvis = rest_rotations(source)[Joint::Hips.index()].inverse();
+    for (side, first, end) in plain_strides(source, clip) {
+        evidence.stances.push(Stance {
+            side,
+            hip_from_ankle: hips_over_stance(source, pelvis, side, first, end),
+        });
+        if origin == Origin::MarkerFit {
+            evidence.heads.push(head_carriage(clip, first, end));
+        }
+    }
+    evidence
 }
 
 /// Lengths of all bones below the hips joint in leg lengths.
@@ -112,15 +111,17 @@ fn head_carriage(clip: &Clip, first: usize, end: usize) -> HeadCarriage {
     let place = |pose: Option<&Pose>| pose.map_or(Vec3::ZERO, |pose| pose.root_position);
     let way = place(frames.last()) - place(frames.first());
     let along_way = from_heading(-way.x.atan2(way.z));
-    let mean = |joint: Joint| {
-        let rotations = frames.iter().map(|pose| {
-            let turned = along_way * ModelPose::of(&clip.skeleton, pose).rotation(joint);
+    let mut sums = [Vec4::ZERO; 2];
+    for pose in frames {
+        let body = ModelPose::of(&clip.skeleton, pose);
+        for (sum, joint) in sums.iter_mut().zip([Joint::Neck, Joint::Head]) {
+            let turned = along_way * body.rotation(joint);
             // Of the two quaternions of a rotation the one near no turn.
-            Vec4::from(turned) * turned.w.signum()
-        });
-        Quat::from_vec4(rotations.sum::<Vec4>().normalize_or(Vec4::W))
-    };
-    HeadCarriage::of_rotations(mean(Joint::Neck), mean(Joint::Head))
+            *sum += Vec4::from(turned) * turned.w.signum();
+        }
+    }
+    let [neck, head] = sums.map(|sum| Quat::from_vec4(sum.normalize_or(Vec4::W)));
+    HeadCarriage::of_rotations(neck, head)
 }
 
 /// Returns true when a stride is plain walking straight ahead.

@@ -33,6 +33,21 @@ fn corpus(conditions: &[&str], fit: SkeletonFit) -> Option<Corpus> {
     Some(Corpus::read_with(folder.join("index.csv"), &conditions, &options).expect("the CMU walks"))
 }
 
+/// The same recordings twice: with skeletons put right, and as recorded.
+fn corrected_and_recorded(conditions: &[&str]) -> Option<[Corpus; 2]> {
+    Some([
+        corpus(conditions, SkeletonFit::FromRecording)?,
+        corpus(conditions, SkeletonFit::AsRecorded)?,
+    ])
+}
+
+fn person_of<'a>(corpus: &'a Corpus, name: &str) -> &'a Person {
+    let mut people = corpus.report.people.iter();
+    people
+        .find(|person| person.subject == name)
+        .expect("a person of the corpus")
+}
+
 fn quantile(values: &mut [f32], share: f32) -> f32 {
     values.sort_by(f32::total_cmp);
     let at = (share * values.len() as f32) as usize;
@@ -116,17 +131,13 @@ fn jerks<'a>(clips: impl Iterator<Item = &'a Recording>) -> Vec<f32> {
 
 #[test]
 fn knees_of_the_cmu_walks_bend_as_people_do_and_soles_stay_flat() {
-    let conditions = ["category=*walk*", "path=cmu/*"];
-    let (Some(corpus), Some(recorded)) = (
-        corpus(&conditions, SkeletonFit::FromRecording),
-        corpus(&conditions, SkeletonFit::AsRecorded),
-    ) else {
+    let Some([corpus, recorded]) = corrected_and_recorded(&["category=*walk*", "path=cmu/*"])
+    else {
         return;
     };
     let (mut peaks, mut recorded_peaks) = (Vec::new(), Vec::new());
     for (name, known) in RECORDED {
-        let mut people = corpus.report.people.iter();
-        let person = people.find(|person| person.subject == name).unwrap();
+        let person = person_of(&corpus, name);
         let before = straightest_knee(of_person(&recorded, person));
         assert!((before - known).abs() < 0.5, "{name}: {before} as recorded");
         let found = &person.fit.hip_centres;
@@ -168,11 +179,8 @@ fn knees_of_the_cmu_walks_bend_as_people_do_and_soles_stay_flat() {
 
 #[test]
 fn soles_and_pelvis_of_the_cmu_walks_turn_as_recorded() {
-    let conditions = ["category=neutral_walk", "path=cmu/*"];
-    let (Some(corpus), Some(recorded)) = (
-        corpus(&conditions, SkeletonFit::FromRecording),
-        corpus(&conditions, SkeletonFit::AsRecorded),
-    ) else {
+    let Some([corpus, recorded]) = corrected_and_recorded(&["category=neutral_walk", "path=cmu/*"])
+    else {
         return;
     };
     let (mut before, mut after) = (ModelPose::default(), ModelPose::default());
@@ -272,17 +280,13 @@ fn pitch<'a>(clips: impl Iterator<Item = &'a Recording>, joint: Joint) -> f32 {
 
 #[test]
 fn faces_of_the_cmu_walks_are_nearly_level_and_necks_are_upright() {
-    let conditions = ["category=*walk*", "path=cmu/*"];
-    let (Some(corpus), Some(recorded)) = (
-        corpus(&conditions, SkeletonFit::FromRecording),
-        corpus(&conditions, SkeletonFit::AsRecorded),
-    ) else {
+    let Some([corpus, recorded]) = corrected_and_recorded(&["category=*walk*", "path=cmu/*"])
+    else {
         return;
     };
     let mut faces = Vec::new();
     for (name, _) in RECORDED {
-        let mut people = corpus.report.people.iter();
-        let person = people.find(|person| person.subject == name).unwrap();
+        let person = person_of(&corpus, name);
         faces.push(pitch(of_person(&recorded, person), Joint::Head));
         let face = pitch(of_person(&corpus, person), Joint::Head);
         assert!(

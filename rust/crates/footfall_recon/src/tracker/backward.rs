@@ -14,14 +14,7 @@ impl Tracker {
     /// Takes probabilities from outside, for which [`body`](Self::body) then stands.
     pub(crate) fn set_probabilities(&mut self, probabilities: &[f32]) {
         self.probability.copy_from_slice(probabilities);
-        self.active.clear();
-        for n in 0..self.prepared.model.segments.len() {
-            let own = &self.probability[self.prepared.frames_of(n)];
-            if own.iter().any(|p| *p > 0.0) {
-                self.active.push(n as u32);
-            }
-        }
-        self.weigh_segments();
+        self.look_at_probable();
     }
 
     /// Goes back by a frame of the backward algorithm. `later` holds a likelihood for each frame of the model, up to a factor: before the call, of all

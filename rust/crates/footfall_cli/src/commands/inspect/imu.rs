@@ -29,7 +29,7 @@ pub(super) fn inspect_model(path: &Path) -> Result<ImuModelFacts> {
     let model = read_model_file(path, ImuModel::from_bytes)?;
     let seconds_of = |behaviour: Behaviour| {
         let of = |segment: &&footfall_model::imu_model::Segment| {
-            model.phases[usize::from(segment.phase)].behaviour == behaviour
+            model.behaviour_of(**segment) == behaviour
         };
         let frames = model.segments.iter().filter(of);
         let frames: u64 = frames.map(|segment| u64::from(segment.frames)).sum();
