@@ -14,10 +14,14 @@ pub(crate) fn start<T: Send + 'static>(
     Job::start(name, move || context.request_repaint(), work)
 }
 
-/// A bar and a button to stop it.
+/// A button that stops work, and its progress.
 pub(crate) fn show<T>(job: &Job<T>, ui: &mut Ui) {
     let progress = job.progress();
     ui.horizontal(|ui| {
+        // First, for what comes behind the progress moves with its words.
+        if ui.button("Cancel").clicked() {
+            job.cancel();
+        }
         if progress.total == 0 {
             ui.spinner();
             ui.label(&progress.task);
@@ -27,9 +31,6 @@ pub(crate) fn show<T>(job: &Job<T>, ui: &mut Ui) {
                 "{} {}/{}",
                 progress.task, progress.done, progress.total
             )));
-        }
-        if ui.button("Cancel").clicked() {
-            job.cancel();
         }
     });
 }

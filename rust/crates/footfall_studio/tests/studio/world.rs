@@ -22,6 +22,25 @@ pub(crate) struct World {
     pub(crate) folder: tempfile::TempDir,
 }
 
+/// A file with a pipe in its place.
+#[cfg(unix)]
+pub(crate) struct HeldFile {
+    path: PathBuf,
+    content: Vec<u8>,
+    pipe: std::fs::File,
+}
+
+#[cfg(unix)]
+impl HeldFile {
+    /// Puts the file back. Who reads the pipe by then comes to its end.
+    pub(crate) fn let_go(self) {
+        let beside = self.path.with_extension("back");
+        std::fs::write(&beside, &self.content).unwrap();
+        std::fs::rename(&beside, &self.path).unwrap();
+        drop(self.pipe);
+    }
+}
+
 pub(crate) type Window = Harness<'static, Studio>;
 
 /// The walk that comes with the add-on.
@@ -112,6 +131,24 @@ impl World {
         assert!(window.state_mut().answer_dialog(index));
         window.run_steps(2);
         window
+    }
+
+    /// Holds back a file: whoever reads it waits until it is let go.
+    #[cfg(unix)]
+    pub(crate) fn hold(&self, file: &str) -> HeldFile {
+        let path = self.folder.path().join(file);
+        let content = std::fs::read(&path).unwrap();
+        std::fs::remove_file(&path).unwrap();
+        let made = std::process::Command::new("mkfifo").arg(&path).status();
+        assert!(made.unwrap().success());
+        // With a writer there is no end, and with both ends in one hand nobody waits for the other.
+        let mut both = std::fs::OpenOptions::new();
+        let pipe = both.read(true).write(true).open(&path).unwrap();
+        HeldFile {
+            path,
+            content,
+            pipe,
+        }
     }
 
     /// A window in which a recorded sensor, worn aligned, moves a body from the beginning on.
