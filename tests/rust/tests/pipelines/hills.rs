@@ -111,6 +111,52 @@ fn knees_bend_on_slopes_little_more_than_on_level_ground() {
     }
 }
 
+/// Flexion of the knees uphill in the frames in which feet land, and least of it while one foot stands: medians, degrees.
+fn knees_uphill(climb: &Climb) -> [f32; 2] {
+    let mut landing = Vec::new();
+    let mut straightest = Vec::new();
+    let mut least = [f32::MAX; 2];
+    climb.watch(|_, walker| {
+        let feet = walker.placer.feet();
+        let is_uphill = (2.0..10.0).contains(&(walker.hips().z - climb.distance_m));
+        for side in Side::BOTH {
+            let (index, knee) = (side.index(), walker.knee(side).to_degrees());
+            if feet[index].landed && is_uphill {
+                landing.push(knee);
+            }
+            if feet[index].landed {
+                least[index] = f32::MAX;
+            }
+            if feet[index].locked && !feet[1 - index].locked {
+                least[index] = least[index].min(knee);
+            }
+            if feet[1 - index].landed && is_uphill {
+                straightest.push(least[index]);
+            }
+        }
+    });
+    [landing, straightest].map(|knees| percentile(&knees, 0.5))
+}
+
+#[test]
+fn knees_straighten_uphill_as_on_level_ground() {
+    for (slope, most) in [(0.0, 18.0), (0.05, 30.0), (0.14, 42.0), (0.25, 54.0)] {
+        let way = Way::Ramp {
+            slope,
+            length: 12.0,
+        };
+        for speed_mps in [0.8, 1.3, 1.6] {
+            let climb = Climb::adult(way, DISTANCE_M, speed_mps);
+            let [landing, straightest] = knees_uphill(&climb);
+            assert!(landing < most, "{climb:?}: lands on a knee of {landing}°");
+            assert!(
+                straightest < 12.0,
+                "{climb:?}: stands on a knee of {straightest}°"
+            );
+        }
+    }
+}
+
 /// Farthest that an ankle jumps beyond how it moved the frame before, metres, of somebody who is asked for something else again and again, also in mid-swing. The hips
 /// of its animation stay at a height between that over a deeply bent knee and that of a leap.
 fn jump_of_the_restless(way: Way, seed: u16) -> f32 {

@@ -16,6 +16,10 @@ use glam::{Quat, Vec3};
 /// fully, metres.
 const PUSH_OFF: f32 = 0.42;
 const PUSH_RISE_M: [f32; 2] = [0.05, 0.15];
+/// Height by which the heel of the foot behind rises further than on level ground when the other lands higher on a slope, as a share of that rise, and at
+/// most, metres: so much of the leg's length keeps the hips as high over the slope in the middle of stance as over level ground.
+const HEEL_SHARE: f32 = 0.5;
+const MOST_HEEL_M: f32 = 0.05;
 /// Typical duration of a step of a walk, and the least time over which its rise is spread, seconds.
 const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
@@ -88,6 +92,8 @@ impl FootPlacer {
             let [least, most] = PUSH_RISE_M;
             let push = PUSH_OFF * smooth_step((rise - least) / (most - least));
             stays = stays.max(stays_at(Some(push)));
+        } else {
+            stays += (HEEL_SHARE * rise).clamp(0.0, MOST_HEEL_M);
         }
         let offset_m = between.min(reached).min(stays);
         let floor_height = floor.position.dot(floor.up());
