@@ -6,8 +6,8 @@
 
 use footfall_core::Joint;
 use footfall_core::rotation::{exp_map, log_map_near};
+use footfall_model::GaitModel;
 use footfall_model::layout::feature_offset;
-use footfall_model::{GaitModel, StateModel};
 use footfall_motion::recording::Recording;
 use glam::{Quat, Vec3};
 
@@ -38,18 +38,18 @@ pub(crate) fn level(model: &mut GaitModel, recordings: &[Recording]) {
     let [neck, head] =
         turns.map(|degrees| Quat::from_rotation_x((SHARE * degrees / strides).to_radians()));
     for state in model.steps.iter_mut().flat_map(|step| &mut step.states) {
-        turn(state, Joint::Neck, Quat::IDENTITY, neck);
-        turn(state, Joint::Head, neck.inverse(), head);
+        turn_feature(&mut state.mean, Joint::Neck, Quat::IDENTITY, neck);
+        turn_feature(&mut state.mean, Joint::Head, neck.inverse(), head);
     }
 }
 
-/// Turns a joint's mean in the axes of its parent and in its own.
-fn turn(state: &mut StateModel, joint: Joint, parent: Quat, own: Quat) {
+/// Turns a joint of features in the axes of its parent and in its own.
+pub(crate) fn turn_feature(features: &mut [f64], joint: Joint, parent: Quat, own: Quat) {
     let at = feature_offset(joint);
-    let mean = &mut state.mean[at..at + 3];
-    let before = Vec3::new(mean[0] as f32, mean[1] as f32, mean[2] as f32);
+    let vector = &mut features[at..at + 3];
+    let before = Vec3::new(vector[0] as f32, vector[1] as f32, vector[2] as f32);
     let turned = log_map_near(parent * exp_map(before) * own, before);
-    for (value, turned) in mean.iter_mut().zip(turned.to_array()) {
+    for (value, turned) in vector.iter_mut().zip(turned.to_array()) {
         *value = f64::from(turned);
     }
 }

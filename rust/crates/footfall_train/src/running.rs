@@ -1,10 +1,13 @@
 //! Running, as a part of a gait model.
 
+mod carriage;
 mod few;
+mod level_off;
 
 use crate::error::TrainError;
 use crate::progress::Progress;
 use crate::train::{TrainConfig, train_average};
+use carriage::Carriages;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
 use footfall_model::{
@@ -20,7 +23,7 @@ const TEMPO_SHARE: f64 = 0.5;
 const ENOUGH_STEPS: usize = 40;
 
 /// Learns the run of a walk's model from the runs in recordings. People with many steps train it; it is adapted to those with few, and each person counts once.
-/// Those who run differ as those who walk do: each of the walk's components between walkers becomes one of the run, of how the body is held and of tempo.
+/// Trunks lean from [their walks](carriage) as recorded. Those who run differ as those who walk do: each of the walk's components between walkers becomes one of the run, of how the body is held and of tempo.
 ///
 /// # Errors
 /// [`TrainError`] if the recordings have no runs, or training on them fails.
@@ -31,9 +34,11 @@ pub fn learn_running(
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<GaitModel, TrainError> {
+    let clips: Vec<Recording> = clips.iter().map(Recording::with_head_as_recorded).collect();
+    let carriages = Carriages::of(&clips, walk);
     let clips: Vec<Recording> = clips
-        .iter()
-        .map(|clip| clip.with_head_as_recorded().running())
+        .into_iter()
+        .map(Recording::running)
         .filter(|clip| !clip.walks.is_empty())
         .collect();
     let [many, few] = few::split(clips, ENOUGH_STEPS);
@@ -51,6 +56,9 @@ pub fn learn_running(
         fine.chance.walker_strength.clear();
     }
     few::include(&mut run, &few, config, progress)?;
+    let differs = run.variation.walker.len() > walk.variation.walker.len();
+    carriages.level(&mut run, [&many, &few], differs);
+    level_off::level_off(&mut run);
     Ok(run)
 }
 

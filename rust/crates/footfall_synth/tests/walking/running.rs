@@ -325,3 +325,31 @@ fn a_runner_goes_on_from_a_saved_state_bit_for_bit() {
         }
     }
 }
+
+/// Rests that a stride leaves over would add up: heads once sank by up to 5° a second, to 30°.
+#[test]
+fn heads_of_runners_stay_up() {
+    let skeleton = Skeleton::standard();
+    for speed in [2.4, 3.5, 4.5] {
+        for seed in 1..9 {
+            let mut generator = generator(Kind::Styled, seed);
+            let (frames, _) = run(&mut generator, &skeleton, &walking(speed), 1200);
+            let down = |joint: Joint, frames: &[Frame]| {
+                let forward = |frame: &Frame| (frame.model.rotation(joint) * Vec3::Z).y;
+                let sum: f32 = frames.iter().map(|frame| -forward(frame).asin()).sum();
+                (sum / frames.len() as f32).to_degrees()
+            };
+            let [early, late] =
+                [&frames[180..360], &frames[1020..]].map(|frames| down(Joint::Head, frames));
+            assert!(
+                (late - early).abs() < 4.0 && late < 18.0,
+                "{speed} m/s, seed {seed}: heads {early}°, later {late}° down"
+            );
+            let trunk = down(Joint::UpperChest, &frames[180..]);
+            assert!(
+                (-8.0..16.0).contains(&trunk),
+                "{speed} m/s, seed {seed}: the trunk leans by {trunk}°"
+            );
+        }
+    }
+}

@@ -1,0 +1,303 @@
+//! Carriage of the trunk: each runner leans from their own walk as recorded, so that runners start from the average walk.
+//!
+//! The bones of a trunk have no direction that all skeletons share. Walking upright, the upper chest of O3DE's actor is tilted back by 23° on the canonical
+//! body, those of CMU's walkers by -4 to 5°. Taken as recorded, the mean of such people runs with a trunk that nobody has, and runners differ by what sets skeletons apart.
+
+use crate::level_heads::turn_feature;
+use footfall_core::rotation::from_heading;
+use footfall_core::{JOINT_COUNT, Joint, rotation};
+use footfall_model::{GaitModel, OBSERVATION_COUNT, layout};
+use footfall_motion::recording::Recording;
+use footfall_motion::steps::Step;
+use glam::{Quat, Vec3};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Joints whose pitch is brought to the average walk's, in the order of the chain. The pelvis is not among them, for hips and feet come from it.
+const CHAIN: [Joint; 5] = [
+    Joint::Spine,
+    Joint::Chest,
+    Joint::UpperChest,
+    Joint::Neck,
+    Joint::Head,
+];
+
+/// Fewest walked steps that show how somebody walks.
+const ENOUGH_STEPS: usize = 10;
+
+/// Pitch of every joint of the [`CHAIN`], downwards, radians.
+type Pitches = [f32; CHAIN.len()];
+
+/// Sum of pitches over frames.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sum {
+    pitches: Pitches,
+    frames: f32,
+    steps: usize,
+}
+
+impl Sum {
+    fn add(&mut self, clip: &footfall_core::Clip, step: &Step) {
+        for pose in &clip.poses[step.first..step.end] {
+            for (sum, own) in self.pitches.iter_mut().zip(pitches(&pose.rotations)) {
+                *sum += own;
+            }
+            self.frames += 1.0;
+        }
+        self.steps += 1;
+    }
+
+    fn mean(&self) -> Pitches {
+        self.pitches.map(|sum| sum / self.frames.max(1.0))
+    }
+}
+
+/// Turns of the trunks of people, by which their skeletons differ from the average walk's.
+#[derive(Debug)]
+pub(super) struct Carriages(BTreeMap<String, Pitches>);
+
+impl Carriages {
+    /// Compares how people walk with the average walk. Whoever is not seen walking, runs with the mean pitch of the others.
+    pub(super) fn of(clips: &[Recording], walk: &GaitModel) -> Self {
+        let [mut walked, mut ran] = [BTreeMap::new(), BTreeMap::new()];
+        for clip in clips {
+            for step in clip.walks.iter().flat_map(|walk| &walk.steps) {
+                let sums: &mut BTreeMap<String, Sum> = if step.take_off.is_some() {
+                    &mut ran
+                } else {
+                    &mut walked
+                };
+                let name = clip.subject().to_owned();
+                sums.entry(name).or_default().add(clip.clip(), step);
+            }
+        }
+        let average = average_pitches(walk);
+        let mut turns: BTreeMap<String, Pitches> = walked
+            .into_iter()
+            .filter(|(name, walked)| walked.steps >= ENOUGH_STEPS && ran.contains_key(name))
+            .map(|(name, walked)| (name, difference(&average, &walked.mean())))
+            .collect();
+        if turns.is_empty() {
+            return Self(turns);
+        }
+        let runs = turns
+            .iter()
+            .map(|(name, turn)| sum(&ran[name].mean(), turn));
+        let running = mean(runs);
+        for (name, ran) in &ran {
+            let others = || difference(&running, &ran.mean());
+            turns.entry(name.clone()).or_insert_with(others);
+        }
+        Self(turns)
+    }
+
+    /// Mean turn of the people in recordings, each counting once, and their number.
+    fn mean(&self, clips: &[Recording]) -> (Pitches, usize) {
+        let names: BTreeSet<&str> = clips.iter().map(Recording::subject).collect();
+        let turns = names.iter().filter_map(|name| self.0.get(*name).copied());
+        (mean(turns), names.len())
+    }
+
+    /// Turns a run that was learned from `many`, and [brought to](super::few::include) the mean with `few`, by the mean of all, and how runners differ along the
+    /// way from the ones to the others by the difference.
+    pub(super) fn level(&self, run: &mut GaitModel, [many, few]: [&[Recording]; 2], differs: bool) {
+        let (own, count) = self.mean(many);
+        let (other, more) = if differs { self.mean(few) } else { (own, 0) };
+        let share = more as f32 / (count + more).max(1) as f32;
+        let apart = difference(&other, &own);
+        let average = sum(&own, &apart.map(|turn| share * turn));
+        let deviation = (share * (1.0 - share)).sqrt();
+        let deviating = apart.map(|turn| deviation * turn);
+        let GaitModel {
+            steps, variation, ..
+        } = run;
+        for (side, step) in steps.iter_mut().enumerate() {
+            for state in &mut step.states {
+                turn(&mut state.mean, &average);
+            }
+            let Some(component) = variation.walker.last_mut().filter(|_| differs) else {
+                continue;
+            };
+            let rows = component[side].means.chunks_exact_mut(OBSERVATION_COUNT);
+            for (row, state) in rows.zip(&step.states) {
+                let mut turned = state.mean.clone();
+                turn(&mut turned, &deviating);
+                for (value, (after, before)) in row.iter_mut().zip(turned.iter().zip(&state.mean)) {
+                    *value += after - before;
+                }
+            }
+        }
+    }
+}
+
+fn mean(all: impl Iterator<Item = Pitches>) -> Pitches {
+    let (mut total, mut count) = (Pitches::default(), 0.0_f32);
+    for own in all {
+        total = sum(&total, &own);
+        count += 1.0;
+    }
+    total.map(|total| total / count.max(1.0))
+}
+
+fn sum(a: &Pitches, b: &Pitches) -> Pitches {
+    core::array::from_fn(|index| a[index] + b[index])
+}
+
+fn difference(a: &Pitches, b: &Pitches) -> Pitches {
+    core::array::from_fn(|index| a[index] - b[index])
+}
+
+/// Mean pitches of an average walk.
+fn average_pitches(walk: &GaitModel) -> Pitches {
+    let features: Vec<f32> = walk
+        .mean_features()
+        .iter()
+        .map(|value| *value as f32)
+        .collect();
+    let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+    layout::decode(&features, &mut rotations);
+    pitches(&rotations)
+}
+
+fn pitches(rotations: &[Quat; JOINT_COUNT]) -> Pitches {
+    let hips = rotations[Joint::Hips.index()];
+    let mut global = from_heading(-rotation::heading(hips)) * hips;
+    CHAIN.map(|joint| {
+        global *= rotations[joint.index()];
+        -(global * Vec3::Z).y.clamp(-1.0, 1.0).asin()
+    })
+}
+
+/// Turns each joint of the chain in features about its own X axis; all others keep their directions.
+fn turn(features: &mut [f64], turns: &Pitches) {
+    let turn_of = |joint: Joint| {
+        let index = CHAIN.iter().position(|own| *own == joint);
+        index.map_or(Quat::IDENTITY, |index| Quat::from_rotation_x(turns[index]))
+    };
+    for joint in Joint::ALL {
+        let parent = joint.parent().map_or(Quat::IDENTITY, turn_of);
+        turn_feature(features, joint, parent.inverse(), turn_of(joint));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::tests::{base, clips};
+    use footfall_core::{ModelPose, Pose, Skeleton};
+    use footfall_model::FEATURE_COUNT;
+
+    /// Walks of one person, of which the last steps count as a run's.
+    fn recordings(subject: &str) -> Vec<Recording> {
+        let clips = clips("path=walker_1_*").into_iter();
+        let mut clips: Vec<Recording> = clips.map(|clip| clip.of_subject(subject)).collect();
+        let walks = clips.iter_mut().flat_map(|clip| &mut clip.walks);
+        let mut steps: Vec<&mut Step> = walks.flat_map(|walk| &mut walk.steps).collect();
+        assert!(steps.len() > ENOUGH_STEPS);
+        for step in steps.iter_mut().skip(ENOUGH_STEPS) {
+            step.take_off = Some(step.end - 1);
+        }
+        clips
+    }
+
+    fn turned(pose: &Pose, turns: &Pitches) -> Pose {
+        let mut features = [0.0; FEATURE_COUNT];
+        layout::encode(pose, 0.0, None, &mut features);
+        turn(&mut features, turns);
+        let mut turned = pose.clone();
+        layout::decode(&features.map(|value| value as f32), &mut turned.rotations);
+        turned
+    }
+
+    /// The same of somebody whose skeleton has other directions of the trunk.
+    fn tilted(mut clips: Vec<Recording>, tilt: &Pitches) -> Vec<Recording> {
+        for clip in &mut clips {
+            for pose in &mut clip.retargeted.clip.poses {
+                *pose = turned(pose, tilt);
+            }
+        }
+        clips
+    }
+
+    const TILT: Pitches = [-0.2, -0.3, -0.4, 0.1, 0.2];
+
+    #[test]
+    fn what_skeletons_call_upright_is_found_and_taken_back() {
+        let walk = base();
+        let upright = recordings("one");
+        let other = tilted(recordings("other"), &TILT);
+        let people = [upright.clone(), other.clone()].concat();
+        let carriages = Carriages::of(&people, &walk);
+        let [(own, _), (others, _)] = [&upright, &other].map(|clips| carriages.mean(clips));
+        for ((own, others), tilt) in own.iter().zip(others).zip(TILT) {
+            assert!((others - own + tilt).abs() < 0.01, "{own} {others} {tilt}");
+        }
+        // A run that was learned from both half and half, along the way from the one to the other, and in which nobody leans beyond their walk.
+        let mut run = walk.clone();
+        for state in run.steps.iter_mut().flat_map(|step| &mut step.states) {
+            turn(&mut state.mean, &TILT.map(|tilt| 0.5 * tilt));
+            turn(&mut state.mean, &own.map(|turn| -turn));
+        }
+        let learned = run.clone();
+        run.variation
+            .walker
+            .push([0, 1].map(|_| footfall_model::StepOffset::zero()));
+        let component = run.variation.walker.last_mut().unwrap();
+        for (offset, step) in component.iter_mut().zip(&learned.steps) {
+            let rows = offset.means.chunks_exact_mut(OBSERVATION_COUNT);
+            for (row, state) in rows.zip(&step.states) {
+                let mut tilted = state.mean.clone();
+                turn(&mut tilted, &TILT.map(|tilt| 0.5 * tilt));
+                let differences = tilted.iter().zip(&state.mean);
+                for (value, (tilted, own)) in row.iter_mut().zip(differences) {
+                    *value = tilted - own;
+                }
+            }
+        }
+        carriages.level(&mut run, [&upright, &other], true);
+        let apart = |a: &[f64], b: &[f64]| {
+            let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
+            differences.fold(0.0, f64::max)
+        };
+        for (run, walk) in run.steps.iter().zip(&walk.steps) {
+            for (run, walk) in run.states.iter().zip(&walk.states) {
+                let apart = apart(&run.mean, &walk.mean);
+                assert!(apart < 0.02, "{apart} rad from the walk");
+            }
+        }
+        let component = run.variation.walker.last().unwrap();
+        let most = component.iter().flat_map(|offset| &offset.means);
+        let most = most.fold(0.0, |most: f64, value| most.max(value.abs()));
+        assert!(most < 0.02, "{most} rad between runners");
+    }
+
+    #[test]
+    fn who_is_not_seen_walking_runs_as_the_others() {
+        let walk = base();
+        let mut stranger = tilted(recordings("stranger"), &TILT);
+        for clip in &mut stranger {
+            for walk in &mut clip.walks {
+                walk.steps.retain(|step| step.take_off.is_some());
+            }
+        }
+        let known = recordings("known");
+        let carriages = Carriages::of(&[known.clone(), stranger.clone()].concat(), &walk);
+        let [(known, _), (strange, _)] = [&known, &stranger].map(|clips| carriages.mean(clips));
+        for ((known, strange), tilt) in known.iter().zip(strange).zip(TILT) {
+            assert!((strange - known + tilt).abs() < 1e-3);
+        }
+        assert!(Carriages::of(&stranger, &walk).0.is_empty());
+    }
+
+    #[test]
+    fn pelvis_legs_and_arms_keep_their_directions() {
+        let skeleton = Skeleton::standard();
+        for before in &recordings("one")[0].clip().poses {
+            let poses = [before.clone(), turned(before, &TILT)];
+            let [before, after] = poses.map(|pose| ModelPose::of(&skeleton, &pose));
+            for joint in Joint::ALL {
+                let turned = before.rotation(joint).angle_between(after.rotation(joint));
+                assert_eq!(turned > 0.01, CHAIN.contains(&joint), "{joint:?} {turned}");
+            }
+        }
+    }
+}
