@@ -23,7 +23,7 @@ const TEMPO_SHARE: f64 = 0.5;
 const ENOUGH_STEPS: usize = 40;
 
 /// Learns the run of a walk's model from the runs in recordings. People with many steps train it; it is adapted to those with few, and each person counts once.
-/// Trunks lean from [their walks](carriage) as recorded. Those who run differ as those who walk do: each of the walk's components between walkers becomes one of the run, of how the body is held and of tempo.
+/// Trunks lean as far from the average walk as each person's from their own. Those who run differ as those who walk do: each of the walk's components between walkers becomes one of the run, of how the body is held and of tempo.
 ///
 /// # Errors
 /// [`TrainError`] if the recordings have no runs, or training on them fails.
