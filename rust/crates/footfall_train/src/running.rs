@@ -55,9 +55,8 @@ pub fn learn_running(
         fine.walker.clear();
         fine.chance.walker_strength.clear();
     }
-    few::include(&mut run, &few, config, progress)?;
-    let differs = run.variation.walker.len() > walk.variation.walker.len();
-    carriages.level(&mut run, [&many, &few], differs);
+    let share = few::include(&mut run, &few, config, progress)?;
+    carriages.level(&mut run, [&many, &few], share);
     level_off::level_off(&mut run);
     Ok(run)
 }

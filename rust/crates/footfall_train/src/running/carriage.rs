@@ -3,6 +3,7 @@
 //! The bones of a trunk have no direction that all skeletons share. Walking upright, the upper chest of O3DE's actor is tilted back by 23° on the canonical
 //! body, those of CMU's walkers by -4 to 5°. Taken as recorded, the mean of such people runs with a trunk that nobody has, and runners differ by what sets skeletons apart.
 
+use super::few::deviation;
 use crate::level_heads::turn_feature;
 use footfall_core::rotation::from_heading;
 use footfall_core::{JOINT_COUNT, Joint, rotation};
@@ -90,22 +91,19 @@ impl Carriages {
         Self(turns)
     }
 
-    /// Mean turn of the people in recordings, each counting once, and their number.
-    fn mean(&self, clips: &[Recording]) -> (Pitches, usize) {
+    /// Mean turn of the people in recordings, each counting once.
+    fn mean(&self, clips: &[Recording]) -> Pitches {
         let names: BTreeSet<&str> = clips.iter().map(Recording::subject).collect();
-        let turns = names.iter().filter_map(|name| self.0.get(*name).copied());
-        (mean(turns), names.len())
+        mean(names.iter().filter_map(|name| self.0.get(*name).copied()))
     }
 
-    /// Turns a run that was learned from `many`, and [brought to](super::few::include) the mean with `few`, by the mean of all, and how runners differ along the
-    /// way from the ones to the others by the difference.
-    pub(super) fn level(&self, run: &mut GaitModel, [many, few]: [&[Recording]; 2], differs: bool) {
-        let (own, count) = self.mean(many);
-        let (other, more) = if differs { self.mean(few) } else { (own, 0) };
-        let share = more as f32 / (count + more).max(1) as f32;
+    /// Turns a run that was learned from `many`, and [brought to](super::few::include) the mean with `few`, whose share among the people this is, by the mean of
+    /// all, and how runners differ along the way from the ones to the others by the difference.
+    pub(super) fn level(&self, run: &mut GaitModel, [many, few]: [&[Recording]; 2], share: f64) {
+        let (own, other) = (self.mean(many), self.mean(few));
         let apart = difference(&other, &own);
-        let average = sum(&own, &apart.map(|turn| share * turn));
-        let deviation = (share * (1.0 - share)).sqrt();
+        let [way, deviation] = [share, deviation(share)].map(|share| share as f32);
+        let average = sum(&own, &apart.map(|turn| way * turn));
         let deviating = apart.map(|turn| deviation * turn);
         let GaitModel {
             steps, variation, ..
@@ -114,7 +112,7 @@ impl Carriages {
             for state in &mut step.states {
                 turn(&mut state.mean, &average);
             }
-            let Some(component) = variation.walker.last_mut().filter(|_| differs) else {
+            let Some(component) = variation.walker.last_mut().filter(|_| share > 0.0) else {
                 continue;
             };
             let rows = component[side].means.chunks_exact_mut(OBSERVATION_COUNT);
@@ -227,7 +225,7 @@ mod tests {
         let other = tilted(recordings("other"), &TILT);
         let people = [upright.clone(), other.clone()].concat();
         let carriages = Carriages::of(&people, &walk);
-        let [(own, _), (others, _)] = [&upright, &other].map(|clips| carriages.mean(clips));
+        let [own, others] = [&upright, &other].map(|clips| carriages.mean(clips));
         for ((own, others), tilt) in own.iter().zip(others).zip(TILT) {
             assert!((others - own + tilt).abs() < 0.01, "{own} {others} {tilt}");
         }
@@ -253,7 +251,7 @@ mod tests {
                 }
             }
         }
-        carriages.level(&mut run, [&upright, &other], true);
+        carriages.level(&mut run, [&upright, &other], 0.5);
         let apart = |a: &[f64], b: &[f64]| {
             let differences = a.iter().zip(b).map(|(a, b)| (a - b).abs());
             differences.fold(0.0, f64::max)
@@ -281,7 +279,7 @@ mod tests {
         }
         let known = recordings("known");
         let carriages = Carriages::of(&[known.clone(), stranger.clone()].concat(), &walk);
-        let [(known, _), (strange, _)] = [&known, &stranger].map(|clips| carriages.mean(clips));
+        let [known, strange] = [&known, &stranger].map(|clips| carriages.mean(clips));
         for ((known, strange), tilt) in known.iter().zip(strange).zip(TILT) {
             assert!((strange - known + tilt).abs() < 1e-3);
         }

@@ -35,7 +35,7 @@ pub(super) fn split(clips: Vec<Recording>, enough: usize) -> [Vec<Recording>; 2]
 }
 
 /// Brings a run to the mean of its own people and the `few`, each counting once, and lets runners differ along the way from the ones to the others.
-/// A run stays as it is if `few` show no two steps in a row.
+/// Returns the share of the few among the people; 0 if they show no two steps in a row, and the run stays as it is.
 ///
 /// # Errors
 /// [`TrainError`] if the run cannot explain the steps of the few.
@@ -44,10 +44,10 @@ pub(super) fn include(
     few: &[Recording],
     config: &TrainConfig,
     progress: &mut dyn Progress,
-) -> Result<(), TrainError> {
+) -> Result<f64, TrainError> {
     let (corpus, _) = EncodedCorpus::of(few, config)?.steady();
     if corpus.is_empty() {
-        return Ok(());
+        return Ok(0.0);
     }
     let mirrored = AdaptConfig {
         method: AdaptMethod::Cmllr,
@@ -65,7 +65,7 @@ pub(super) fn include(
     );
     let style = match adapted {
         Ok(adapted) => adapted.style,
-        Err(TrainError::NoSteps | TrainError::TooFewSteps { .. }) => return Ok(()),
+        Err(TrainError::NoSteps | TrainError::TooFewSteps { .. }) => return Ok(0.0),
         Err(error) => return Err(error),
     };
     let difference = Side::BOTH.map(|side| difference(&at_their_speed, &style, side));
@@ -75,8 +75,7 @@ pub(super) fn include(
         add(run, side, offset, share);
     }
     reweigh(run, &style, share);
-    // What is once 0 and once 1 has this deviation.
-    let deviation = (share * (1.0 - share)).sqrt();
+    let deviation = deviation(share);
     run.variation.walker.push(difference.map(|offset| {
         let mut component = StepOffset::zero();
         component.add_scaled(&evenly_timed(offset), deviation);
@@ -85,7 +84,12 @@ pub(super) fn include(
     run.provenance.clips += more.clips;
     run.provenance.subjects += more.subjects;
     run.provenance.steps += more.steps;
-    Ok(())
+    Ok(share)
+}
+
+/// Deviation of what is 1 for this share of people and 0 for the others.
+pub(super) fn deviation(share: f64) -> f64 {
+    (share * (1.0 - share)).sqrt()
 }
 
 /// The run at another speed.

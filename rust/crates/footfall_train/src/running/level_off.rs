@@ -28,31 +28,27 @@ pub(super) fn level_off(run: &mut GaitModel) {
     }
     let states = run.steps.iter_mut().flat_map(|step| &mut step.states);
     let mut means: Stride<'_> = states.map(|state| state.mean.as_mut_slice()).collect();
-    for dim in differences() {
-        let drift = drift(&means, &frames, dim);
-        for mean in &mut means {
-            mean[dim] -= drift;
-        }
-    }
+    take(&mut means, |means, dim| drift(means, &frames, dim));
     let variation = &mut run.variation;
     for offset in variation.walker.iter_mut().chain(&mut variation.step) {
-        let mut offsets = rows(offset);
-        for dim in differences() {
-            let drift = drift(&offsets, &frames, dim);
-            for offset in &mut offsets {
-                offset[dim] -= drift;
-            }
-        }
+        take(&mut rows(offset), |offsets, dim| {
+            drift(offsets, &frames, dim)
+        });
     }
-    if faster <= 0.0 {
-        return;
+    if faster > 0.0 {
+        take(&mut rows(&mut run.speed.slopes), |slopes, dim| {
+            // States last otherwise in a fast run, so that the means alone have a drift there.
+            drift(&means, &fast_frames, dim) / faster + drift(slopes, &fast_frames, dim)
+        });
     }
-    let mut slopes = rows(&mut run.speed.slopes);
+}
+
+/// Takes this amount of each of the [`differences`] from every state of a stride.
+fn take(stride: &mut Stride<'_>, amount: impl Fn(&Stride<'_>, usize) -> f64) {
     for dim in differences() {
-        // States last otherwise in a fast run, so that the means alone have a drift there.
-        let own = drift(&means, &fast_frames, dim) / faster + drift(&slopes, &fast_frames, dim);
-        for slope in &mut slopes {
-            slope[dim] -= own;
+        let amount = amount(stride, dim);
+        for state in stride.iter_mut() {
+            state[dim] -= amount;
         }
     }
 }
