@@ -5,6 +5,7 @@
 //! goes with the components in which walkers differ, and noise.
 
 mod chance;
+mod edges;
 mod liveliness;
 mod orientation;
 
@@ -22,6 +23,8 @@ use glam::Vec3;
 use liveliness::planned_liveliness;
 use orientation::Orientations;
 use rayon::prelude::*;
+
+pub(crate) use edges::restore as restore_edges;
 
 /// Upper limit of fine motion, hertz: above it is marker noise. A filter's edge is soft, and the band that counts ends at 6 Hz.
 const CUT_OFF_HZ: f64 = 10.0;

@@ -6,7 +6,7 @@ mod level_off;
 
 use crate::error::TrainError;
 use crate::progress::Progress;
-use crate::train::{TrainConfig, train_average};
+use crate::train::{TrainConfig, train_gait};
 use carriage::Carriages;
 use footfall_core::Joint;
 use footfall_model::layout::feature_offset;
@@ -42,7 +42,7 @@ pub fn learn_running(
         .filter(|clip| !clip.walks.is_empty())
         .collect();
     let [many, few] = few::split(clips, ENOUGH_STEPS);
-    let mut run = train_average(&many, config, provenance, progress)?.model;
+    let mut run = train_gait(&many, config, provenance, progress)?.model;
     let components = walk.variation.walker.iter();
     run.variation.walker = components
         .map(|component| {

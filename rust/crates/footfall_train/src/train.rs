@@ -60,6 +60,20 @@ pub fn train_average(
     provenance: Provenance,
     progress: &mut dyn Progress,
 ) -> Result<Trained, TrainError> {
+    let mut trained = train_gait(clips, config, provenance, progress)?;
+    if let Some(fine) = &mut trained.model.fine {
+        fine_motion::restore_edges(fine);
+    }
+    Ok(trained)
+}
+
+/// As [`train_average`], with the fine motion as estimated.
+pub(crate) fn train_gait(
+    clips: &[Recording],
+    config: &TrainConfig,
+    provenance: Provenance,
+    progress: &mut dyn Progress,
+) -> Result<Trained, TrainError> {
     let recorded: Vec<Recording> = clips.iter().map(Recording::with_head_as_recorded).collect();
     let encoded = EncodedCorpus::of(&recorded, config)?;
     let (corpus, _) = encoded.steady();

@@ -81,15 +81,15 @@ fn accuracies(comparison: &Comparison, wanted: View) -> [f64; 2] {
 
 /// Judges one gait of the model against itself and against a smoothed copy; the former is returned.
 fn judge_both(gait: Gait) -> Comparison {
-    let first = walkers(gait, 1..9, Clip::clone);
+    let first = walkers(gait, 1..13, Clip::clone);
     let alike =
-        compare(&first, &walkers(gait, 101..117, Clip::clone), gait).expect("enough strides");
+        compare(&first, &walkers(gait, 101..125, Clip::clone), gait).expect("enough strides");
     for view in View::ALL {
         for accuracy in accuracies(&alike, view) {
             assert!(accuracy < 0.68, "{gait:?}, {}: {accuracy}", view.name());
         }
     }
-    let smooth = compare(&first, &walkers(gait, 101..117, smoothed), gait).expect("enough strides");
+    let smooth = compare(&first, &walkers(gait, 101..125, smoothed), gait).expect("enough strides");
     for view in [View::All, View::Smoothness] {
         for accuracy in accuracies(&smooth, view) {
             assert!(accuracy > 0.9, "{gait:?}, {}: {accuracy}", view.name());

@@ -50,16 +50,24 @@ fn the_other_foot_and_the_other_pocket_are_told() {
     let anyhow = Quat::from_rotation_z(2.0) * Quat::from_rotation_x(1.0);
     let foot = shipped("right_foot");
     let thigh = shipped("right_thigh");
+    let of = |prepared: &Arc<Prepared>, site: Site, seed: u64| {
+        finding(prepared, &walk(site, seed, anyhow), None)
+    };
     for seed in 1..5 {
-        let of = |prepared: &Arc<Prepared>, site: Site| {
-            finding(prepared, &walk(site, seed, anyhow), None)
-        };
-        assert_eq!(of(&foot, Site::RightFoot), None, "{seed}");
-        assert_eq!(of(&foot, Site::LeftFoot), Some(OTHER_FOOT), "{seed}");
-        assert_eq!(of(&thigh, Site::RightThigh), None, "{seed}");
-        let other = of(&thigh, Site::LeftThigh).unwrap();
+        assert_eq!(of(&foot, Site::RightFoot, seed), None, "{seed}");
+        assert_eq!(of(&thigh, Site::RightThigh, seed), None, "{seed}");
+        let other = of(&thigh, Site::LeftThigh, seed).unwrap();
         assert!(other.to_string().contains("left thigh"), "{seed}: {other}");
     }
+    let found: Vec<SensorProblem> = (1..13)
+        .filter_map(|seed| of(&foot, Site::LeftFoot, seed))
+        .collect();
+    assert!(
+        found.iter().all(|problem| *problem == OTHER_FOOT),
+        "{found:?}"
+    );
+    // Two of them walk so nearly alike with both feet that the sensor's foot is left open.
+    assert!(found.len() >= 10, "{} of 12", found.len());
 }
 
 /// Subject 4 is not among them: both recordings of that person seem to have left and right exchanged.

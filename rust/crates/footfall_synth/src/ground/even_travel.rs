@@ -56,7 +56,10 @@ impl Planter {
         let people = self.people_s(timing, course);
         let mut waves = [Wave::default(); MOST.len()];
         for (index, (wave, most)) in waves.iter_mut().zip(MOST).enumerate() {
-            let turn = Vec2::from_angle(TAU * (index + 1) as f32 / frames);
+            let Some(turned) = turn_in_frame(index + 1, timing.frames) else {
+                continue;
+            };
+            let turn = Vec2::from_angle(turned);
             let mut angle = Vec2::X;
             let mut sum = Vec2::ZERO;
             for (frame, planted) in out[..timing.frames].iter().enumerate() {
@@ -65,7 +68,7 @@ impl Planter {
             }
             wave.turn = turn;
             // Displacement by a speed of one mean.
-            let unit = pace / turn.to_angle();
+            let unit = pace / turned;
             let generated = (sum * (2.0 / frames)).clamp_length_max(most * unit);
             let captured = FORWARDS[index].perp() * unit;
             // A change of speed looks like a surge but is not one.
@@ -109,6 +112,11 @@ impl Planter {
     }
 }
 
+/// Turn of a harmonic of the step's frequency from a frame to the next, radians; `None` where the frames are too few to show it, as in the rest of a step that is planned anew.
+fn turn_in_frame(harmonic: usize, frames: usize) -> Option<f32> {
+    (2 * harmonic < frames).then(|| TAU * harmonic as f32 / frames as f32)
+}
+
 /// One harmonic of the travel.
 #[derive(Clone, Copy, Default)]
 struct Wave {
@@ -122,5 +130,23 @@ impl Wave {
     /// Its speed in the first frame, metres a frame.
     fn first_speed(&self) -> f32 {
         self.amplitude.y * self.turn.to_angle()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use core::f32::consts::PI;
+
+    #[test]
+    fn harmonics_turn_by_less_than_half_a_turn_in_a_frame_or_are_left_out() {
+        for harmonic in 1..=MOST.len() {
+            for frames in 1..60 {
+                let shown = turn_in_frame(harmonic, frames);
+                assert_eq!(shown.is_some(), frames > 2 * harmonic);
+                // Beyond half a turn an angle is taken for one in the other direction, and a limit on the amplitude turns negative.
+                assert!(shown.is_none_or(|turn| turn > 0.0 && turn < PI), "{frames}");
+            }
+        }
     }
 }
