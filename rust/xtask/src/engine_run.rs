@@ -3,8 +3,9 @@
 use crate::process;
 use anyhow::{Context as _, Result, bail};
 use std::fs::{self, File};
+use std::io;
 use std::path::Path;
-use std::process::{Command, ExitStatus, Stdio};
+use std::process::{Child, Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// Complaints that fail a run wherever they stand. Godot's own exit code says nothing of them.
@@ -100,14 +101,40 @@ pub(crate) fn started(command: &mut Command, log: &Path) -> Result<(Option<ExitS
             break Some(status);
         }
         if begin.elapsed() > LIMIT {
-            child.kill().context("cannot end Godot")?;
-            child.wait().context("cannot wait for Godot")?;
+            end(&mut child).context("cannot end Godot")?;
             break None;
         }
         std::thread::sleep(Duration::from_millis(50));
     };
     let said = String::from_utf8_lossy(&fs::read(log).context("cannot read the log")?).into_owned();
     Ok((status, said))
+}
+
+/// Ends a program and all that it has started: without its script, a display and the Godot on it would run for ever.
+fn end(child: &mut Child) -> io::Result<()> {
+    let started = started_by(&child.id().to_string());
+    child.kill()?;
+    if !started.is_empty() {
+        let mut kill = Command::new("sh");
+        kill.args(["-c", &format!("kill -KILL {}", started.join(" "))]);
+        kill.status()?;
+    }
+    child.wait()?;
+    Ok(())
+}
+
+/// Numbers of the processes that a process has started, and those that they have; none where the system does not list them.
+fn started_by(process: &str) -> Vec<String> {
+    let list = format!("/proc/{process}/task/{process}/children");
+    let mut all = Vec::new();
+    for child in fs::read_to_string(list)
+        .unwrap_or_default()
+        .split_whitespace()
+    {
+        all.push(child.to_owned());
+        all.extend(started_by(child));
+    }
+    all
 }
 
 /// The first line of a log that fails the run.
@@ -147,6 +174,31 @@ mod tests {
         assert!(
             complaint("expected errors: begin\nthread 'main' panicked at src/lib.rs\n").is_some()
         );
+    }
+
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_run_that_hangs_is_ended_with_all_that_it_started() {
+        let mut command = Command::new("sh");
+        command.args(["-c", "sleep 60 & sh -c 'sleep 60; true'; true"]);
+        // If they went on, whoever reads the test's output would wait for them.
+        command.stdout(Stdio::null()).stderr(Stdio::null());
+        let mut child = command.spawn().expect("a shell");
+        let process = child.id().to_string();
+        let begin = Instant::now();
+        let mut started = Vec::new();
+        while started.len() < 3 && begin.elapsed() < Duration::from_secs(10) {
+            started = started_by(&process);
+        }
+        assert_eq!(started.len(), 3, "{started:?}");
+        end(&mut child).expect("it can be ended");
+        let runs = |process: &String| {
+            let state = fs::read_to_string(format!("/proc/{process}/stat"));
+            state.is_ok_and(|state| !state.contains(") Z"))
+        };
+        while started.iter().any(runs) {
+            assert!(begin.elapsed() < Duration::from_secs(20), "{started:?}");
+        }
     }
 
     #[cfg(unix)]
