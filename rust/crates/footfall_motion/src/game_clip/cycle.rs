@@ -11,6 +11,8 @@ const LEAST_FRAMES: usize = 8;
 /// again, and where it is the one before.
 const SAME: f32 = 0.5;
 const NEXT: f32 = 1.8;
+/// A smaller change, as a share of the usual one, is none: an engine holds the last frame of a clip that lacks the one after it.
+const HELD: f32 = 0.1;
 /// A slower change is no movement, radians a frame, sum of all joints.
 const LEAST_CHANGE: f32 = 0.02;
 /// Time for which a loop is repeated, and the greatest number of repetitions.
@@ -24,15 +26,21 @@ pub(super) fn find(clip: &Clip, first: usize) -> Option<usize> {
     if count < LEAST_FRAMES || count as f64 > LONGEST_SECS * clip.frame_rate_hz {
         return None;
     }
-    let mut changes: Vec<f32> = poses
+    let changes: Vec<f32> = poses
         .windows(2)
         .map(|pair| difference(&pair[0], &pair[1]))
         .collect();
-    changes.sort_by(f32::total_cmp);
-    let usual = changes[changes.len() / 2];
+    let mut sorted = changes.clone();
+    sorted.sort_by(f32::total_cmp);
+    let usual = sorted[sorted.len() / 2];
     if usual < LEAST_CHANGE {
         return None;
     }
+    let held = changes
+        .iter()
+        .rev()
+        .take_while(|change| **change < HELD * usual);
+    let count = count - held.count();
     let to_first = |frame: usize| difference(&poses[frame], &poses[0]);
     let last = to_first(count - 1);
     if last < SAME * usual {
@@ -46,7 +54,11 @@ pub(super) fn find(clip: &Clip, first: usize) -> Option<usize> {
 
 /// Repeats the clip's motion with its travel, and returns how often it is there now.
 pub(super) fn unroll(clip: &mut Clip, first: usize, cycle: usize) -> usize {
-    let poses = clip.poses.split_off(first.min(clip.poses.len()));
+    let mut poses = clip.poses.split_off(first.min(clip.poses.len()));
+    let is_first_again =
+        |last: &Pose| difference(last, &poses[0]) < difference(last, &poses[cycle - 1]);
+    let closes = poses.get(cycle).is_some_and(is_first_again);
+    poses.truncate(cycle + usize::from(closes));
     let secs = cycle as f64 / clip.frame_rate_hz;
     let repeats = ((WANTED_SECS / secs).ceil() as usize).clamp(2, MOST_REPEATS);
     let (turn, travel) = round(&poses, cycle);
@@ -151,10 +163,33 @@ mod tests {
         assert_eq!(find(&still, 0), None);
     }
 
+    /// The same with its last frame held.
+    fn held(clip: Clip, frames: usize) -> Clip {
+        let last = clip.poses.iter().last().cloned();
+        let held = last.into_iter().cycle().take(frames);
+        let poses = clip.poses.into_iter().chain(held).collect();
+        Clip { poses, ..clip }
+    }
+
+    #[test]
+    fn a_last_frame_that_is_held_is_none_of_the_loop() {
+        for frames in 1..4 {
+            assert_eq!(find(&held(swinging(30, 30.0), frames), 0), Some(30));
+            assert_eq!(find(&held(swinging(31, 30.0), frames), 0), Some(30));
+            assert_eq!(find(&held(swinging(26, 30.0), frames), 0), None);
+        }
+    }
+
     #[test]
     fn a_loop_goes_on_where_it_came_to() {
-        for frames in [30, 31] {
-            let mut clip = swinging(frames, 30.0);
+        for clip in [
+            swinging(30, 30.0),
+            swinging(31, 30.0),
+            held(swinging(30, 30.0), 1),
+            held(swinging(31, 30.0), 2),
+        ] {
+            let mut clip = clip;
+            let frames = clip.poses.len();
             let repeats = unroll(&mut clip, 0, 30);
             assert_eq!(clip.poses.len(), repeats * 30 + 1);
             let whole = swinging(repeats * 30 + 1, 30.0);
