@@ -6,7 +6,7 @@ extends RefCounted
 const VIEWS: Array[Array] = [
 	[0.0, Vector3(7.6, 2.0, 13.9), Vector3(6.6, 1.0, 7.2), Vector3(5.7, 0, 11.4), 155.0],
 	[3.7, Vector3(6.7, 1.45, -4.3), Vector3(9.3, 1.05, -0.9)],
-	[6.3, Vector3(0.2, 1.4, -7.6), Vector3(2.4, 1.2, -10.8), Vector3(2.7, 0, -8.1), 180.0],
+	[6.3, Vector3(-1.9, 1.9, -8.6), Vector3(2.2, 1.2, -10.6), Vector3(2.7, 0, -8.1), 180.0],
 	[12.0, Vector3(-7.7, 1.75, -6.2), Vector3(-10.7, 0.75, -3.3), Vector3(-10.5, 0, -0.6), 180.0],
 ]
 ## Seconds → what the player does then: where it goes (infinite: straight north), at which speed, and true for a jump.
