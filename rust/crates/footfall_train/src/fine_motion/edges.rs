@@ -23,7 +23,7 @@ const TRUNK: Edges = Edges {
     chance: 1.15,
 };
 
-/// Restores the edges of a walk's pelvis, trunk and head. Those of runs are shaken as they are.
+/// Restores the edges of a walk's pelvis, trunk and head. Runs do without: their trunks are shaken as they are, and heads would be thrown.
 pub(crate) fn restore(fine: &mut FineMotion) {
     let tables = fine.walker.iter_mut().chain([&mut fine.shared]).flatten();
     for row in tables.flat_map(|table| table.chunks_exact_mut(FEATURE_COUNT)) {
@@ -44,5 +44,42 @@ fn scale(row: &mut [f64], factor: impl Fn(Edges) -> f64) {
         for value in values {
             *value *= factor(edges);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use footfall_model::{FINE_POINTS, FINE_TAPS, FineChance};
+
+    #[test]
+    fn pelvis_and_trunk_get_edges_and_limbs_stay() {
+        let table = || [(); 2].map(|()| vec![1.0; FINE_POINTS * FEATURE_COUNT]);
+        let mut fine = FineMotion {
+            shared: table(),
+            walker: vec![table()],
+            chance: FineChance {
+                kernels: vec![vec![1.0; FINE_TAPS]],
+                directions: vec![vec![1.0; FEATURE_COUNT]],
+                walker_strength: vec![0.0],
+            },
+            scale: vec![1.0; FEATURE_COUNT],
+        };
+        restore(&mut fine);
+        let repeated = fine.walker.iter().chain([&fine.shared]).flatten();
+        for row in repeated.flat_map(|table| table.chunks_exact(FEATURE_COUNT)) {
+            for (joint, values) in Joint::ALL.into_iter().zip(row.chunks_exact(3)) {
+                let is_limb = joint.index() >= Joint::LeftShoulder.index();
+                let stronger = values.iter().all(|value| *value > 1.3);
+                assert_eq!(stronger, !is_limb, "{joint:?}: {values:?}");
+            }
+        }
+        let direction = &fine.chance.directions[0];
+        assert!(direction[..3].iter().all(|value| *value > 1.1));
+        let first_limb = 3 * Joint::LeftShoulder.index();
+        assert_eq!(
+            direction[first_limb..],
+            vec![1.0; FEATURE_COUNT - first_limb]
+        );
     }
 }
