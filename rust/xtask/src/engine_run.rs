@@ -179,6 +179,10 @@ mod tests {
     #[cfg(target_os = "linux")]
     #[test]
     fn a_run_that_hangs_is_ended_with_all_that_it_started() {
+        if !Path::new("/proc/thread-self/children").exists() {
+            // This kernel lists no processes.
+            return;
+        }
         let mut command = Command::new("sh");
         command.args(["-c", "sleep 60 & sh -c 'sleep 60; true'; true"]);
         // If they went on, whoever reads the test's output would wait for them.

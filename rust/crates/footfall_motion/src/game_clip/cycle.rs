@@ -182,13 +182,12 @@ mod tests {
 
     #[test]
     fn a_loop_goes_on_where_it_came_to() {
-        for clip in [
+        for mut clip in [
             swinging(30, 30.0),
             swinging(31, 30.0),
             held(swinging(30, 30.0), 1),
             held(swinging(31, 30.0), 2),
         ] {
-            let mut clip = clip;
             let frames = clip.poses.len();
             let repeats = unroll(&mut clip, 0, 30);
             assert_eq!(clip.poses.len(), repeats * 30 + 1);
