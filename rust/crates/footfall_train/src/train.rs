@@ -67,7 +67,7 @@ pub fn train_average(
     Ok(trained)
 }
 
-/// As [`train_average`], with the fine motion as estimated.
+/// Trains as [`train_average`] does, but leaves the fine motion as estimated. Runs need that: stronger detail of their trunks throws their heads.
 pub(crate) fn train_gait(
     clips: &[Recording],
     config: &TrainConfig,

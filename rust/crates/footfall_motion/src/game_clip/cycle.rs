@@ -11,7 +11,7 @@ const LEAST_FRAMES: usize = 8;
 /// again, and where it is the one before.
 const SAME: f32 = 0.5;
 const NEXT: f32 = 1.8;
-/// A smaller change, as a share of the usual one, is none: an engine holds the last frame of a clip that lacks the one after it.
+/// Change of a held frame at most, as a share of the usual change. Engines hold the last frame of a clip that lacks the one after it.
 const HELD: f32 = 0.1;
 /// A slower change is no movement, radians a frame, sum of all joints.
 const LEAST_CHANGE: f32 = 0.02;
@@ -163,7 +163,7 @@ mod tests {
         assert_eq!(find(&still, 0), None);
     }
 
-    /// The same with its last frame held.
+    /// A clip whose last frame is held for so many frames.
     fn held(clip: Clip, frames: usize) -> Clip {
         let last = clip.poses.iter().last().cloned();
         let held = last.into_iter().cycle().take(frames);

@@ -112,7 +112,8 @@ impl Planter {
     }
 }
 
-/// Turn of a harmonic of the step's frequency from a frame to the next, radians; `None` where the frames are too few to show it, as in the rest of a step that is planned anew.
+/// Returns the turn of a harmonic of the step's frequency from a frame to the next, radians; `None` where the frames are too few to show it, as in the rest of a step that is
+/// planned anew.
 fn turn_in_frame(harmonic: usize, frames: usize) -> Option<f32> {
     (2 * harmonic < frames).then(|| TAU * harmonic as f32 / frames as f32)
 }

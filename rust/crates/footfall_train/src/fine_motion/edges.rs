@@ -1,4 +1,4 @@
-//! Edges that a walk loses on the way from captured steps to shown ones.
+//! Edges that a walk loses on the way from captured steps to generated ones.
 
 use footfall_core::Joint;
 use footfall_model::{FEATURE_COUNT, FineMotion};
@@ -12,18 +12,19 @@ struct Edges {
     chance: f64,
 }
 
-/// Without these factors the energies of third differences of shown pelvises, trunks and heads are 20 to 35 % below those of CMU's neutral walkers: a mean of walkers whose edges
-/// fall at different moments is duller than each of them, and hips that are carried over planted feet lose more.
+/// Factors for the pelvis. Without them and [`TRUNK`]'s, the energies of third differences of generated pelvises, trunks and heads are 20 to 35 % below those of CMU's neutral
+/// walkers: the mean of walkers whose edges fall at different moments is duller than each of them, and hips that are carried over planted feet lose more.
 const PELVIS: Edges = Edges {
     repeated: 1.4,
     chance: 1.2,
 };
+/// Factors for the trunk, the neck and the head.
 const TRUNK: Edges = Edges {
     repeated: 1.5,
     chance: 1.15,
 };
 
-/// Restores the edges of a walk's pelvis, trunk and head. Runs do without: their trunks are shaken as they are, and heads would be thrown.
+/// Restores the edges of a walk's pelvis, trunk and head.
 pub(crate) fn restore(fine: &mut FineMotion) {
     let tables = fine.walker.iter_mut().chain([&mut fine.shared]).flatten();
     for row in tables.flat_map(|table| table.chunks_exact_mut(FEATURE_COUNT)) {
@@ -38,8 +39,8 @@ fn scale(row: &mut [f64], factor: impl Fn(Edges) -> f64) {
     for (joint, values) in Joint::ALL.into_iter().zip(row.chunks_exact_mut(3)) {
         let edges = match joint {
             Joint::Hips => PELVIS,
-            Joint::Spine | Joint::Chest | Joint::UpperChest | Joint::Neck | Joint::Head => TRUNK,
-            _ => continue,
+            _ if joint.is_of_arm() || joint.is_of_leg() => continue,
+            _ => TRUNK,
         };
         for value in values {
             *value *= factor(edges);
