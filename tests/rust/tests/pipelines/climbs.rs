@@ -304,9 +304,9 @@ fn edges_of_blocks_throw_no_swinging_foot() {
     }
 }
 
-/// Turning on stairs swings a foot over several treads, whose edges lie near both ends of its way.
+/// Turning on stairs swings a foot over several treads, of which these small legs go up three at a time.
 #[test]
-fn few_who_turn_on_stairs_kick_as_high_as_the_hip() {
+fn nobody_who_turns_on_stairs_kicks_as_high_as_the_hip() {
     let skeleton = Skeleton::standard().scaled(0.65);
     let least = 0.1 * skeleton.mean_leg_length();
     let kicks = |seed: u64| {
@@ -330,8 +330,7 @@ fn few_who_turn_on_stairs_kick_as_high_as_the_hip() {
         })
     };
     let kicking: Vec<u64> = (1..161).filter(|seed| kicks(*seed)).collect();
-    // One in twenty goes up three of these treads, a leg's length, in one stride.
-    assert!(kicking.len() <= 8, "{kicking:?}");
+    assert!(kicking.is_empty(), "{kicking:?}");
 }
 
 /// All sizes, from a stroll to a hurry.

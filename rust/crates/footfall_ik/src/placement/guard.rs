@@ -2,9 +2,9 @@
 
 use crate::leg::FootTarget;
 use crate::placement::foot::{Animated, Foot, Scene};
-use crate::placement::swing::LATE_RISE_M;
 use crate::placement::terrain::Terrain;
 use crate::placement::wall::SUNK_M;
+use crate::placement::way::LATE_RISE_M;
 use crate::rocker::RockerFoot;
 use footfall_core::ease::smooth_step;
 use glam::Vec3;

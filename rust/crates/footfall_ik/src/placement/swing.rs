@@ -7,7 +7,7 @@ use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, REPLANT_SECS, Scene, W
 use crate::placement::foothold::Foothold;
 use crate::placement::frame::Frame;
 use crate::placement::terrain::Terrain;
-use crate::placement::way::{Way, passed};
+use crate::placement::way::{LATE_RISE_M, Way, held_back, passed};
 use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
 use footfall_core::ease::smooth_step;
@@ -19,10 +19,6 @@ const EARLY_SECS: [f32; 2] = [0.28, 0.07];
 const EARLY_FALL_M: f32 = 0.08;
 /// Part of the swing over which a foot that has less time than that gets up its hurry.
 const HURRIED_SHARE: f32 = 0.5;
-/// Parts of the swing until which a rising foot stays over its last place, and at which it has caught up: its toes come over the edge
-/// before it and not through it; and the rise from which this applies, metres.
-const LATE_SHARES: [f32; 2] = [0.1, 0.6];
-pub(super) const LATE_RISE_M: f32 = 0.08;
 /// Greatest distance by which a foot swings past a foothold with an edge above it, metres.
 const MOST_PAST_M: f32 = 0.008;
 /// Way ahead from its last place to a foothold from which a foot is kept before that edge, metres.
@@ -159,8 +155,7 @@ impl Foot {
         let normal = lifted.tilt * Vec3::Y;
         let slope = -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
         let rise = toward.shift.y - lifted.shift.y - slope;
-        let [from, until] = LATE_SHARES;
-        self.held = smooth_step((until - share) / (until - from)) * smooth_step(rise / LATE_RISE_M);
+        self.held = held_back(share, rise);
         let come = start - animated.flat.position;
         self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
     }
@@ -196,7 +191,8 @@ impl Foot {
         let way = plan.way.unwrap_or_else(|| {
             let lifted = self.lifted(scene);
             let from = animated.flat.position + lifted.shift;
-            Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole)
+            let stood = self.origin == WayOrigin::Foothold;
+            Way::look(scene, (from, lifted.tilt * Vec3::Y), &sole, stood)
         });
         if plan.way.is_none() {
             let mut foothold = plan.foothold;

@@ -20,6 +20,12 @@ const FLAT_WAY_M: f32 = 0.01;
 const WAY_POINTS: usize = 6;
 /// Distance by which the toes meet an edge before the ankle is there, metres.
 const TOES_M: f32 = 0.1;
+/// Parts of the swing until which a rising foot stays over its last place, and at which it has caught up: its toes come over the edge
+/// before it and not through it; and the rise from which this applies, metres.
+const LATE_SHARES: [f32; 2] = [0.1, 0.6];
+pub(super) const LATE_RISE_M: f32 = 0.08;
+/// Number of halvings that find when a foot is at a place.
+const HALVINGS: usize = 8;
 /// Heights of the ground above the line between the footholds up to which the way is even, and from which it is not, metres.
 const EVEN_M: [f32; 2] = [0.01, 0.03];
 /// The same for slopes of that line beyond those of both footholds.
@@ -39,16 +45,20 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Looks at the ground between two soles, the first of which lies on ground with this normal.
+    /// Looks at the ground between two soles, the first of which lies on ground with this normal. A foot that `stood` there is held back before
+    /// edges.
     pub(super) fn look<T: Terrain>(
         scene: &mut Scene<'_, T>,
         (from, normal): (Vec3, Vec3),
         sole: &Frame,
+        stood: bool,
     ) -> Self {
         let rise = sole.position.y - from.y;
         let way = (sole.position - from).with_y(0.0);
         let length = way.length().max(SHORT_WAY_M);
         let slope = rise / length;
+        let slopes = [normal, sole.up()].map(|up| -up.dot(way) / (length * up.y.max(0.5)));
+        let step = rise - slopes[0] * way.length();
         let (mut lift, mut edge) = (0.0_f32, 0.0_f32);
         for point in 1..=WAY_POINTS {
             let share = point as f32 / (WAY_POINTS + 1) as f32;
@@ -57,6 +67,7 @@ impl Way {
                 continue;
             };
             edge = edge.max(height - (at.y + TOES_M * slope));
+            let share = if stood { there(share, step) } else { share };
             let foot = from.y + rise * smooth_step(rising(share, rise > 0.0));
             let usual = USUAL_LIFT_M * 4.0 * share * (1.0 - share);
             let short = height + CLEARANCE_M - foot - usual;
@@ -65,7 +76,6 @@ impl Way {
                 lift = lift.max(short);
             }
         }
-        let slopes = [normal, sole.up()].map(|up| -up.dot(way) / (length * up.y.max(0.5)));
         let [least, most] = [slopes[0].min(slopes[1]), slopes[0].max(slopes[1])];
         let beyond = (slope - most).max(least - slope);
         let share =
@@ -104,6 +114,27 @@ pub(super) fn passed(left: Vec3, lands: Vec3, now: Vec3) -> f32 {
     let length = way.length().max(SHORT_WAY_M);
     let passed = (now - left).dot(way) / (length * length);
     passed.clamp(PASSED[0], PASSED[1])
+}
+
+/// Part of the first half of the swing by which a foot is held back over the place where it stood, before an edge above it by so much, metres.
+pub(super) fn held_back(share: f32, rise_m: f32) -> f32 {
+    let [from, until] = LATE_SHARES;
+    smooth_step((until - share) / (until - from)) * smooth_step(rise_m / LATE_RISE_M)
+}
+
+/// Part of the swing at which a foot that is held back is where it would be at `share` otherwise.
+fn there(share: f32, rise_m: f32) -> f32 {
+    let place = smooth_step(share);
+    let [mut before, mut after] = [share, 1.0];
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (before + after);
+        if smooth_step(middle) * (1.0 - held_back(middle, rise_m)) < place {
+            before = middle;
+        } else {
+            after = middle;
+        }
+    }
+    after
 }
 
 /// Share of its rise that a foot has behind it: one that goes up rises early, one that goes down sinks late.
@@ -145,8 +176,12 @@ mod tests {
         }
     }
 
-    /// The way over 1.2 m of this ground.
+    /// The way over 1.2 m of this ground, from where the foot stood.
     fn over(height: fn(f32) -> f32) -> Way {
+        along(height, true)
+    }
+
+    fn along(height: fn(f32) -> f32, stood: bool) -> Way {
         let config = PlacementConfig::default();
         let mut scene = Scene {
             terrain: &mut Relief(height),
@@ -163,6 +198,7 @@ mod tests {
             &mut scene,
             (Vec3::Y * height(0.0), normal(height, 0.0)),
             &sole,
+            stood,
         )
     }
 
@@ -195,6 +231,20 @@ mod tests {
             assert!(way.even < 1e-3, "{way:?}");
         }
         assert!(over(edges[4]).lift_m > 0.05);
+    }
+
+    /// Steps of 0.17 m, the first of them at the toes.
+    #[test]
+    fn a_foot_that_is_held_back_is_not_lifted_over_the_first_edge() {
+        let stairs = |z: f32| 0.17 * (z / 0.4 + 0.7).floor();
+        let [held, swung] = [true, false].map(|stood| along(stairs, stood).lift_m);
+        assert!(held < 0.01 && swung > 0.05, "{held} {swung}");
+        for place in [0.1_f32, 0.3, 0.6] {
+            let share = there(place, 0.5);
+            let moved = smooth_step(share) * (1.0 - held_back(share, 0.5));
+            assert!((moved - smooth_step(place)).abs() < 0.01, "{share} {moved}");
+            assert!((there(place, 0.0) - place).abs() < 0.01);
+        }
     }
 
     #[test]
