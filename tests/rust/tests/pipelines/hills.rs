@@ -98,7 +98,7 @@ fn hills_and_blocks_are_run_over_smoothly() {
 #[test]
 fn knees_bend_on_slopes_little_more_than_on_level_ground() {
     // On level ground it is 68 to 75°.
-    for (slope, most) in [(0.14, 85.0), (0.364, 100.0), (-0.14, 98.0), (-0.364, 113.0)] {
+    for (slope, most) in [(0.14, 85.0), (0.364, 100.0), (-0.14, 92.0), (-0.364, 103.0)] {
         let way = Way::Ramp {
             slope,
             length: 12.0,
@@ -111,31 +111,34 @@ fn knees_bend_on_slopes_little_more_than_on_level_ground() {
     }
 }
 
-/// Flexion of the knees uphill in the frames in which feet land, and least of it while one foot stands: medians, degrees.
-fn knees_uphill(climb: &Climb) -> [f32; 2] {
+/// Flexion of the knees on a slope in the frames in which feet land, least of it while one foot stands, and that in the middle of this time: medians,
+/// degrees.
+fn knees_on_slope(climb: &Climb) -> [f32; 3] {
     let mut landing = Vec::new();
     let mut straightest = Vec::new();
-    let mut least = [f32::MAX; 2];
+    let mut middle = Vec::new();
+    let mut alone: [Vec<f32>; 2] = Default::default();
     climb.watch(|_, walker| {
         let feet = walker.placer.feet();
-        let is_uphill = (2.0..10.0).contains(&(walker.hips().z - climb.distance_m));
+        let is_on_slope = (2.0..10.0).contains(&(walker.hips().z - climb.distance_m));
         for side in Side::BOTH {
             let (index, knee) = (side.index(), walker.knee(side).to_degrees());
-            if feet[index].landed && is_uphill {
-                landing.push(knee);
-            }
             if feet[index].landed {
-                least[index] = f32::MAX;
+                alone[index].clear();
+                if is_on_slope {
+                    landing.push(knee);
+                }
             }
             if feet[index].locked && !feet[1 - index].locked {
-                least[index] = least[index].min(knee);
+                alone[index].push(knee);
             }
-            if feet[1 - index].landed && is_uphill {
-                straightest.push(least[index]);
+            if feet[1 - index].landed && is_on_slope && !alone[index].is_empty() {
+                straightest.push(alone[index].iter().copied().fold(f32::MAX, f32::min));
+                middle.push(alone[index][alone[index].len() / 2]);
             }
         }
     });
-    [landing, straightest].map(|knees| percentile(&knees, 0.5))
+    [landing, straightest, middle].map(|knees| percentile(&knees, 0.5))
 }
 
 #[test]
@@ -147,12 +150,28 @@ fn knees_straighten_uphill_as_on_level_ground() {
         };
         for speed_mps in [0.8, 1.3, 1.6] {
             let climb = Climb::adult(way, DISTANCE_M, speed_mps);
-            let [landing, straightest] = knees_uphill(&climb);
+            let [landing, straightest, _] = knees_on_slope(&climb);
             assert!(landing < most, "{climb:?}: lands on a knee of {landing}°");
             assert!(
                 straightest < 12.0,
                 "{climb:?}: stands on a knee of {straightest}°"
             );
+        }
+    }
+}
+
+/// On level ground it is 13 to 17°.
+#[test]
+fn who_goes_downhill_stands_on_a_leg_that_is_little_bent() {
+    for (slope, most) in [(-0.05, 30.0), (-0.14, 42.0), (-0.25, 47.0), (-0.364, 51.0)] {
+        let way = Way::Ramp {
+            slope,
+            length: 12.0,
+        };
+        for speed_mps in [0.8, 1.3, 1.6] {
+            let climb = Climb::adult(way, DISTANCE_M, speed_mps);
+            let [_, _, middle] = knees_on_slope(&climb);
+            assert!(middle < most, "{climb:?}: stands on a knee of {middle}°");
         }
     }
 }

@@ -20,6 +20,12 @@ const PUSH_RISE_M: [f32; 2] = [0.05, 0.15];
 /// most, metres: so much of the leg's length keeps the hips as high over the slope in the middle of stance as over level ground.
 const HEEL_SHARE: f32 = 0.5;
 const MOST_HEEL_M: f32 = 0.05;
+/// Height by which hips that go down a slope are above the even way in the middle of a step, as a share of its fall, and at most, as a share of the
+/// leg: people stand on a leg that is little bent and come down late. On stairs they bend it at once.
+const BOW_SHARE: f32 = 0.4;
+const MOST_BOW: f32 = 0.028;
+/// Time after a landing in which such a way begins, seconds.
+const BOW_BEGINS_SECS: f32 = 0.1;
 /// Typical duration of a step of a walk, and the least time over which its rise is spread, seconds.
 const STEP_SECS: f32 = 0.6;
 const LEAST_STEP_SECS: f32 = 0.2;
@@ -35,6 +41,8 @@ pub(super) struct Arrival {
     /// Above the animation's floor, metres, and how fast it rises then, m/s.
     pub(super) offset_m: f32,
     pub(super) rise_mps: f32,
+    /// Height by which the way there is bowed up in its middle, metres.
+    pub(super) bow_m: f32,
     pub(super) secs: f32,
 }
 
@@ -80,6 +88,7 @@ impl FootPlacer {
             return Some(Arrival {
                 offset_m: height.min(reached),
                 rise_mps,
+                bow_m: 0.0,
                 secs: landing.secs,
             });
         }
@@ -88,12 +97,16 @@ impl FootPlacer {
         let rise = sole.position.y - standing.sole.position.y;
         let stays_at = |pitch| reach(other, &animated[other].flat, &standing.correction, pitch);
         let mut stays = stays_at(None);
+        let mut bow_m = 0.0;
         if plan.foothold.on_ball {
             let [least, most] = PUSH_RISE_M;
             let push = PUSH_OFF * smooth_step((rise - least) / (most - least));
             stays = stays.max(stays_at(Some(push)));
         } else {
             stays += (HEEL_SHARE * rise).clamp(0.0, MOST_HEEL_M);
+            if standing.swing_secs < BOW_BEGINS_SECS {
+                bow_m = (BOW_SHARE * -rise).clamp(0.0, MOST_BOW * self.leg_lengths[other]);
+            }
         }
         let offset_m = between.min(reached).min(stays);
         let floor_height = floor.position.dot(floor.up());
@@ -109,6 +122,7 @@ impl FootPlacer {
         Some(Arrival {
             offset_m,
             rise_mps,
+            bow_m,
             secs: landing.secs,
         })
     }

@@ -63,8 +63,9 @@ impl FootPlacer {
         let before = self.pelvis.value;
         if let Some(arrival) = arrival.filter(|_| known) {
             let target = floor_height + arrival.offset_m.clamp(-bound, bound);
+            let arrives = [target, arrival.rise_mps];
             self.pelvis
-                .arrive(target, arrival.rise_mps, arrival.secs, dt_secs);
+                .arrive(arrives, arrival.bow_m, arrival.secs, dt_secs);
         } else {
             let offset = self.easy_offset(hips, hips_rotation, pose, targets);
             let target = floor_height + offset.clamp(-bound, bound);

@@ -1,5 +1,6 @@
 //! Height of the pelvis over uneven ground.
 
+use footfall_core::ease::smooth_step;
 use glam::Vec3;
 
 /// A critically damped follower of a height.
@@ -51,6 +52,8 @@ pub(crate) struct Ride {
 struct Course {
     from: [f32; 3],
     to: [f32; 2],
+    /// Height in the middle above that curve.
+    bow_m: f32,
     secs: f32,
     passed_secs: f32,
 }
@@ -60,6 +63,8 @@ const SAME_M: f32 = 0.004;
 const SAME_SECS: f32 = 0.03;
 /// Least duration of a course, seconds.
 const LEAST_SECS: f32 = 0.1;
+/// Times to a landing from which on a way begun then is bowed, and is so fully, seconds: one that takes the place of another has only its end.
+const BOW_SECS: [f32; 2] = [0.25, 0.4];
 /// Least time of a frame in which a height has a velocity, seconds.
 const LEAST_DT_SECS: f32 = 1e-3;
 /// Share of a course's duration after which half of the distance is covered, for courses that are always replaced before their end.
@@ -80,17 +85,30 @@ impl Course {
         let c3 = 10.0 * way - 4.0 * speed + 0.5 * turn;
         let c4 = -15.0 * way + 7.0 * speed - turn;
         let c5 = 6.0 * way - 3.0 * speed + 0.5 * turn;
+        // 1 in the middle, without a velocity or an acceleration at the ends.
+        let (room, slant, bow) = (s * (1.0 - s), 1.0 - 2.0 * s, 64.0 * self.bow_m);
         [
-            from + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5)))),
-            (c1 + s * (2.0 * c2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))) / secs,
-            (2.0 * c2 + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))) / (secs * secs),
+            from + s * (c1 + s * (c2 + s * (c3 + s * (c4 + s * c5)))) + bow * room.powi(3),
+            (c1 + s * (2.0 * c2 + s * (3.0 * c3 + s * (4.0 * c4 + s * 5.0 * c5)))
+                + bow * 3.0 * room * room * slant)
+                / secs,
+            (2.0 * c2
+                + s * (6.0 * c3 + s * (12.0 * c4 + s * 20.0 * c5))
+                + bow * 6.0 * room * (slant * slant - room))
+                / (secs * secs),
         ]
     }
 }
 
 impl Ride {
-    /// Advances towards `target`, to pass it in `secs` at a velocity.
-    pub(crate) fn arrive(&mut self, target: f32, velocity: f32, secs: f32, dt_secs: f32) {
+    /// Advances towards `target`, to pass it in `secs` at a velocity, on a way that is bowed up by so much in its middle.
+    pub(crate) fn arrive(
+        &mut self,
+        [target, velocity]: [f32; 2],
+        bow_m: f32,
+        secs: f32,
+        dt_secs: f32,
+    ) {
         let kept = self.course.filter(|course| {
             let left = course.secs - course.passed_secs - dt_secs;
             (course.to[0] - target).abs() < SAME_M && (left - secs).abs() < SAME_SECS
@@ -98,6 +116,7 @@ impl Ride {
         let course = kept.unwrap_or(Course {
             from: [self.value, self.velocity, self.acceleration],
             to: [target, velocity],
+            bow_m: bow_m * smooth_step((secs - BOW_SECS[0]) / (BOW_SECS[1] - BOW_SECS[0])),
             secs: (secs + dt_secs).max(LEAST_SECS),
             passed_secs: 0.0,
         });
@@ -110,6 +129,7 @@ impl Ride {
         let course = Course {
             from: [self.value, self.velocity, self.acceleration],
             to: [target, 0.0],
+            bow_m: 0.0,
             secs: (half_life_secs / HALF_SHARE).max(1e-3),
             passed_secs: 0.0,
         };
@@ -186,7 +206,7 @@ mod tests {
         for (target, velocity) in [(0.15, 0.3), (0.3, 0.3), (0.3, 0.0), (0.1, -0.2)] {
             for frame in 0..30 {
                 let secs = (29 - frame) as f32 * dt;
-                ride.arrive(target, velocity, secs, dt);
+                ride.arrive([target, velocity], 0.03, secs, dt);
                 heights.push(ride.value);
             }
             assert!((ride.value - target).abs() < 1e-4, "{}", ride.value);
@@ -201,6 +221,23 @@ mod tests {
             let bend = (at[0] - 2.0 * at[1] + at[2]).abs() / (dt * dt);
             assert!(bend < 8.0, "{bend} m/s²");
         }
+    }
+
+    #[test]
+    fn a_bowed_way_is_higher_in_its_middle_alone() {
+        let dt = 1.0 / 60.0;
+        let way = |bow_m: f32| {
+            let mut ride = Ride::default();
+            let heights = (0..36).map(|frame| {
+                ride.arrive([-0.1, -0.2], bow_m, (35 - frame) as f32 * dt, dt);
+                ride.value
+            });
+            heights.collect::<Vec<f32>>()
+        };
+        let raised: Vec<f32> = way(0.03).iter().zip(way(0.0)).map(|(a, b)| a - b).collect();
+        assert!((raised[17] - 0.03).abs() < 1e-3, "{raised:?}");
+        assert!(raised[2] < 0.003 && raised[33] < 0.003, "{raised:?}");
+        assert!(raised[35].abs() < 1e-5, "{raised:?}");
     }
 
     #[test]
