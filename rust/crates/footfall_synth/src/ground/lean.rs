@@ -22,7 +22,7 @@ use glam::{Quat, Vec2, Vec3};
 const INTO_TURN: f32 = 0.72;
 const LEGS: f32 = 1.3;
 
-/// Share of the angle of balance by which pelvis and trunk lean against a change of speed, and the share of that which the neck takes back.
+/// Share of the angle of balance by which pelvis and trunk lean against a change of speed, and the share of a trunk's lean that the neck takes back.
 const AGAINST_CHANGE: f32 = 0.75;
 pub(crate) const HEAD_KEPT: f32 = 0.5;
 

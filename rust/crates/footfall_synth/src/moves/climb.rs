@@ -1,13 +1,13 @@
 //! Climbs: the trunk leans forward uphill and back downhill.
 
+use crate::ground::HEAD_KEPT;
 use footfall_core::ease::settled;
 use footfall_core::{Joint, Pose};
 use glam::Quat;
 
-/// Lean of the trunk uphill and downhill as a share of the slope's angle, and the part of it that the neck compensates: people keep their eyes level.
+/// Lean of the trunk uphill and downhill as a share of the slope's angle; the neck takes part of it back, for people keep their eyes level.
 const UPHILL: f32 = 0.2;
 const DOWNHILL: f32 = 0.1;
-const HEAD_KEPT: f32 = 0.5;
 
 /// Steepest grade that has an effect, rise over run.
 const STEEPEST: f32 = 1.0;
