@@ -60,9 +60,6 @@ pub(crate) struct Options {
     /// glibc that it has to run with, as `x86_64-unknown-linux-gnu.2.31` does.
     #[arg(long, requires = "target")]
     pub(crate) cross: bool,
-    /// Build at a lower priority than what runs beside it.
-    #[arg(skip)]
-    pub(crate) yields: bool,
 }
 
 /// One way to build the library.
@@ -182,9 +179,6 @@ fn run(
     let keeps_much = matches!(platform.system(), "android" | "macos" | "windows");
     if flavour == Flavour::Editor && profile == "release" && options.cross && keeps_much {
         cargo.args(CROSS_EDITOR);
-    }
-    if options.yields {
-        cargo = process::yielding(cargo);
     }
     process::run(&mut cargo)?;
     let folder = paths::target_folder().join(folder);

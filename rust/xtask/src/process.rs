@@ -50,29 +50,6 @@ pub(crate) fn cargo_by(program: &Path) -> Command {
     cargo
 }
 
-/// Priority of what yields: a quarter of what the others have. At the usual 10 a build starves and ends long after them.
-const NICENESS: &str = "5";
-
-/// The same command at a lower priority, where the system has a program for that: it takes what processors have left beside others.
-pub(crate) fn yielding(command: Command) -> Command {
-    if !cfg!(unix) {
-        return command;
-    }
-    let mut nice = Command::new("nice");
-    nice.args(["-n", NICENESS]);
-    nice.arg(command.get_program()).args(command.get_args());
-    for (name, value) in command.get_envs() {
-        match value {
-            Some(value) => nice.env(name, value),
-            None => nice.env_remove(name),
-        };
-    }
-    if let Some(folder) = command.get_current_dir() {
-        nice.current_dir(folder);
-    }
-    nice
-}
-
 /// Runs to the end with the terminal's own output, sent to stderr so that stdout stays clean.
 ///
 /// # Errors
@@ -152,22 +129,6 @@ mod tests {
     fn a_tail_is_the_end() {
         assert_eq!(tail("a\nb\nc\n", 2), "b\nc");
         assert_eq!(tail("a", 5), "a");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn a_yielding_command_is_the_same_at_a_lower_priority() {
-        let niceness =
-            |mut command: Command| -> i32 { read(&mut command).unwrap().trim().parse().unwrap() };
-        let own = niceness(Command::new("nice"));
-        assert_eq!(niceness(yielding(Command::new("nice"))), (own + 5).min(19));
-        let mut shell = Command::new("sh");
-        shell
-            .args(["-c", "pwd; echo $GIVEN $HOME"])
-            .current_dir("/");
-        shell.env("GIVEN", "a value").env_remove("HOME");
-        let said = read(&mut yielding(shell)).unwrap();
-        assert_eq!(said, "/\na value\n");
     }
 
     #[test]

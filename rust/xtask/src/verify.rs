@@ -22,7 +22,7 @@ const fn step(name: &'static str, check: fn() -> Result<()>) -> Step {
 type Lane = &'static [Step];
 
 /// Stages that run one after another; the lanes of a stage run side by side. Lanes of one stage must not write the same files.
-const STAGES: [&[Lane]; 5] = [
+const STAGES: [&[Lane]; 4] = [
     &[&[step("format", checks::format), step("tidy", tidy::command)]],
     // The second lane waits for downloads.
     &[
@@ -32,17 +32,12 @@ const STAGES: [&[Lane]; 5] = [
             step("chromium", checks::browser),
         ],
     ],
-    // Tests leave a third of the processors' time to the library.
-    &[
-        &[
-            step("tests", checks::tests),
-            step("examples", examples::check),
-            step("package", package::check),
-            step("docs", checks::docs),
-        ],
-        &[step("library", checks::build_library)],
-    ],
     &[&[
+        step("tests", checks::tests),
+        step("examples", examples::check),
+        step("package", package::check),
+        step("docs", checks::docs),
+        step("library", checks::build_library),
         // It measures frames, so nothing may run beside it.
         step("godot-play", checks::play_in_godot),
         // It replaces the library of the project that others play.

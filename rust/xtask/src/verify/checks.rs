@@ -61,11 +61,10 @@ pub(super) fn docs() -> Result<()> {
     )
 }
 
-/// Builds the library in both flavours, the editor's and the one for exported games, while the tests run.
+/// Builds the library in both flavours: the editor's, and the one for exported games.
 pub(super) fn build_library() -> Result<()> {
     library::build(&library::Options {
         all: true,
-        yields: true,
         ..library::Options::default()
     })
 }

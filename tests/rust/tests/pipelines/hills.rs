@@ -160,7 +160,6 @@ fn knees_straighten_uphill_as_on_level_ground() {
     }
 }
 
-/// On level ground it is 13 to 17°.
 #[test]
 fn who_goes_downhill_stands_on_a_leg_that_is_little_bent() {
     for (slope, most) in [(-0.05, 30.0), (-0.14, 42.0), (-0.25, 47.0), (-0.364, 51.0)] {

@@ -63,7 +63,7 @@ const SAME_M: f32 = 0.004;
 const SAME_SECS: f32 = 0.03;
 /// Least duration of a course, seconds.
 const LEAST_SECS: f32 = 0.1;
-/// Times to a landing from which on a way begun then is bowed, and is so fully, seconds: one that takes the place of another has only its end.
+/// Times to a landing, seconds: a way that is shorter than the first is not bowed, one longer than the second fully.
 const BOW_SECS: [f32; 2] = [0.25, 0.4];
 /// Least time of a frame in which a height has a velocity, seconds.
 const LEAST_DT_SECS: f32 = 1e-3;

@@ -116,7 +116,7 @@ pub(super) fn passed(left: Vec3, lands: Vec3, now: Vec3) -> f32 {
     passed.clamp(PASSED[0], PASSED[1])
 }
 
-/// Part of the first half of the swing by which a foot is held back over the place where it stood, before an edge above it by so much, metres.
+/// Share of its way by which a foot that rises over an edge, of so many metres, is held back at this part of the swing: 1 over the place where it stood.
 pub(super) fn held_back(share: f32, rise_m: f32) -> f32 {
     let [from, until] = LATE_SHARES;
     smooth_step((until - share) / (until - from)) * smooth_step(rise_m / LATE_RISE_M)
