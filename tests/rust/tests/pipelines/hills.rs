@@ -23,6 +23,13 @@ fn run(climb: &Climb) -> (Outcome, f32) {
     (outcome, flying as f32 / frames as f32)
 }
 
+const fn ramp(slope: f32) -> Way {
+    Way::Ramp {
+        slope,
+        length: 12.0,
+    }
+}
+
 fn runner(way: Way, speed_mps: f32) -> Climb {
     Climb {
         runs: true,
@@ -46,10 +53,7 @@ fn runners_go_on_running_up_and_down_slopes() {
     for body in BODIES {
         for speed_mps in [3.5, 5.0] {
             for slope in [-0.21, -0.14, -0.07, 0.07, 0.14] {
-                let way = Way::Ramp {
-                    slope,
-                    length: 12.0,
-                };
+                let way = ramp(slope);
                 let climb = Climb {
                     body,
                     ..runner(way, speed_mps)
@@ -66,10 +70,7 @@ fn runners_go_on_running_up_and_down_slopes() {
 #[test]
 fn nobody_runs_up_what_is_steep() {
     for slope in [-0.4, 0.4] {
-        let way = Way::Ramp {
-            slope,
-            length: 12.0,
-        };
+        let way = ramp(slope);
         let climb = runner(way, 3.5);
         let (outcome, flight) = run(&climb);
         expect_smooth(&climb, &outcome, 0.075);
@@ -99,16 +100,20 @@ fn hills_and_blocks_are_run_over_smoothly() {
 fn knees_bend_on_slopes_little_more_than_on_level_ground() {
     // On level ground it is 68 to 75°.
     for (slope, most) in [(0.14, 85.0), (0.364, 100.0), (-0.14, 92.0), (-0.364, 103.0)] {
-        let way = Way::Ramp {
-            slope,
-            length: 12.0,
-        };
+        let way = ramp(slope);
         for speed_mps in [0.8, 1.3, 2.0] {
             let climb = Climb::adult(way, DISTANCE_M, speed_mps);
             let bend = climb.walk().bend.to_degrees();
             assert!(bend < most, "{climb:?}: {bend}°");
         }
     }
+}
+
+/// From a stroll to a brisk walk.
+fn walks(slope: f32) -> impl Iterator<Item = Climb> {
+    [0.8, 1.3, 1.6]
+        .map(|speed_mps| Climb::adult(ramp(slope), DISTANCE_M, speed_mps))
+        .into_iter()
 }
 
 /// Flexion of the knees on a slope in the frames in which feet land, least of it while one foot stands, and that in the middle of this time: medians,
@@ -144,12 +149,7 @@ fn knees_on_slope(climb: &Climb) -> [f32; 3] {
 #[test]
 fn knees_straighten_uphill_as_on_level_ground() {
     for (slope, most) in [(0.0, 18.0), (0.05, 30.0), (0.14, 42.0), (0.25, 54.0)] {
-        let way = Way::Ramp {
-            slope,
-            length: 12.0,
-        };
-        for speed_mps in [0.8, 1.3, 1.6] {
-            let climb = Climb::adult(way, DISTANCE_M, speed_mps);
+        for climb in walks(slope) {
             let [landing, straightest, _] = knees_on_slope(&climb);
             assert!(landing < most, "{climb:?}: lands on a knee of {landing}°");
             assert!(
@@ -163,12 +163,7 @@ fn knees_straighten_uphill_as_on_level_ground() {
 #[test]
 fn who_goes_downhill_stands_on_a_leg_that_is_little_bent() {
     for (slope, most) in [(-0.05, 30.0), (-0.14, 42.0), (-0.25, 47.0), (-0.364, 51.0)] {
-        let way = Way::Ramp {
-            slope,
-            length: 12.0,
-        };
-        for speed_mps in [0.8, 1.3, 1.6] {
-            let climb = Climb::adult(way, DISTANCE_M, speed_mps);
+        for climb in walks(slope) {
             let [_, _, middle] = knees_on_slope(&climb);
             assert!(middle < most, "{climb:?}: stands on a knee of {middle}°");
         }

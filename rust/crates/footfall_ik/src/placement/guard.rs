@@ -2,7 +2,7 @@
 
 use crate::leg::FootTarget;
 use crate::placement::foot::{Animated, Foot, Scene};
-use crate::placement::terrain::Terrain;
+use crate::placement::terrain::{Terrain, rise_along};
 use crate::placement::wall::SUNK_M;
 use crate::placement::way::LATE_RISE_M;
 use crate::rocker::RockerFoot;
@@ -92,7 +92,7 @@ impl Foot {
                 short = short.max(before + room - point.y);
             }
             // An edge ahead, as far as it is not the slope on which the foot goes anyway.
-            let slope = -normal.dot(ahead) / normal.y.max(0.5);
+            let slope = rise_along(normal, ahead);
             if let Some((edge, _)) = scene.ground(*point + ahead - back) {
                 // Where it falls less than at this point, as behind an edge, it counts as it is.
                 let edge = (edge - slope).min(edge.max(height));

@@ -1,5 +1,6 @@
 //! Height of the pelvis over uneven ground.
 
+use crate::placement::terrain::rise_along;
 use footfall_core::ease::smooth_step;
 use glam::Vec3;
 
@@ -176,7 +177,7 @@ impl Ride {
 /// Height of a plane under a place, for planes that are not upright.
 pub(crate) fn plane_height(on_plane: Vec3, normal: Vec3, place: Vec3) -> f32 {
     let run = Vec3::new(place.x - on_plane.x, 0.0, place.z - on_plane.z).clamp_length_max(0.6);
-    on_plane.y - normal.dot(run) / normal.y.max(0.5)
+    on_plane.y + rise_along(normal, run)
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::placement::correction::{Correction, Residual};
 use crate::placement::foot::{Animated, FOLLOW_SECS, Foot, REPLANT_SECS, Scene, WayOrigin};
 use crate::placement::foothold::Foothold;
 use crate::placement::frame::Frame;
-use crate::placement::terrain::Terrain;
+use crate::placement::terrain::{Terrain, rise_along};
 use crate::placement::way::{LATE_RISE_M, Way, held_back, passed};
 use crate::rocker::RockerFoot;
 use core::f32::consts::PI;
@@ -153,8 +153,7 @@ impl Foot {
         let way = lands - (start + lifted.shift);
         // A slope on which it stood goes on: it is no edge.
         let normal = lifted.tilt * Vec3::Y;
-        let slope = -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
-        let rise = toward.shift.y - lifted.shift.y - slope;
+        let rise = toward.shift.y - lifted.shift.y - rise_along(normal, way);
         self.held = held_back(share, rise);
         let come = start - animated.flat.position;
         self.correction.shift += self.held * come * Vec3::new(1.0, 0.0, 1.0);
@@ -280,8 +279,7 @@ impl Foot {
         if let WayOrigin::Unplanned(before) = self.origin {
             let way = scene.world_from_floor.rotation.conjugate() * (place - before);
             let normal = self.correction.tilt * Vec3::Y;
-            let along = (normal.x * way.x + normal.z * way.z) / normal.y.max(0.5);
-            self.correction.shift.y -= along + way.y;
+            self.correction.shift.y -= way.y - rise_along(normal, way);
         }
         self.origin = WayOrigin::Unplanned(place);
         let share = 1.0 - (-scene.dt_secs / FOLLOW_SECS).exp();

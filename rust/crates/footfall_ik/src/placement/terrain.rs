@@ -38,3 +38,8 @@ impl<F: FnMut(Vec3, Vec3) -> Option<Ground>> Terrain for F {
         Some(Frame::IDENTITY)
     }
 }
+
+/// Rise of ground with this normal along a way seen from above, metres; at most twice as far as that way goes.
+pub(super) fn rise_along(normal: Vec3, way: Vec3) -> f32 {
+    -(normal.x * way.x + normal.z * way.z) / normal.y.max(0.5)
+}

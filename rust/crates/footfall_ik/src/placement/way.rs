@@ -3,7 +3,7 @@
 use crate::placement::correction::Correction;
 use crate::placement::foot::Scene;
 use crate::placement::frame::Frame;
-use crate::placement::terrain::Terrain;
+use crate::placement::terrain::{Terrain, rise_along};
 use footfall_core::ease::smooth_step;
 use glam::Vec3;
 
@@ -57,8 +57,8 @@ impl Way {
         let way = (sole.position - from).with_y(0.0);
         let length = way.length().max(SHORT_WAY_M);
         let slope = rise / length;
-        let slopes = [normal, sole.up()].map(|up| -up.dot(way) / (length * up.y.max(0.5)));
-        let step = rise - slopes[0] * way.length();
+        let slopes = [normal, sole.up()].map(|up| rise_along(up, way) / length);
+        let step = rise - rise_along(normal, way);
         let (mut lift, mut edge) = (0.0_f32, 0.0_f32);
         for point in 1..=WAY_POINTS {
             let share = point as f32 / (WAY_POINTS + 1) as f32;
