@@ -74,6 +74,14 @@ mod tests {
     }
 
     #[test]
+    fn rotations_by_any_number_of_turns_are_rotations() {
+        let angles = COUNTING * COUNTING * 500.0 - f32x8::splat(9.0);
+        let [x, y] = [Quatx8::from_rotation_x, Quatx8::from_rotation_y].map(|all| all(angles));
+        assert!(agree(x, |lane| Quat::from_rotation_x(angles.as_array()[lane])));
+        assert!(agree(y, |lane| Quat::from_rotation_y(angles.as_array()[lane])));
+    }
+
+    #[test]
     fn lanes_in_which_the_short_way_fails_are_mended_alone() {
         let long = [
             Vec3::X * 3.5,

@@ -2,6 +2,7 @@
 
 use super::{LANES, Vec3x8, f32x8};
 use crate::rotation::{self, MAX_SQUARED_HALF_ANGLE, half_angle};
+use core::f32::consts::PI;
 use core::ops::Mul;
 use glam::Quat;
 use wide::f32x4;
@@ -144,28 +145,36 @@ impl Quatx8 {
         )
     }
 
-    /// The rotations about +X by angles in radians: exact up to half a turn, and to a ten-thousandth at a whole one.
+    /// The rotations about +X by angles in radians: exact up to half a turn and beyond a whole one, and to a ten-thousandth at that.
     #[inline]
     pub fn from_rotation_x(angles: f32x8) -> Self {
-        let (half_sine_over_angle, w) = half_angle(angles * angles * 0.25);
-        Self {
+        let squared = angles * angles * 0.25;
+        let (half_sine_over_angle, w) = half_angle(squared);
+        let short = Self {
             x: angles * half_sine_over_angle,
             y: f32x8::ZERO,
             z: f32x8::ZERO,
             w,
-        }
+        };
+        short.mend(squared.simd_le(f32x8::splat(PI * PI)), |lane| {
+            Quat::from_rotation_x(angles.as_array()[lane])
+        })
     }
 
-    /// The rotations about +Y by angles in radians: exact up to half a turn, and to a ten-thousandth at a whole one.
+    /// The rotations about +Y by angles in radians: exact up to half a turn and beyond a whole one, and to a ten-thousandth at that.
     #[inline]
     pub fn from_rotation_y(angles: f32x8) -> Self {
-        let (half_sine_over_angle, w) = half_angle(angles * angles * 0.25);
-        Self {
+        let squared = angles * angles * 0.25;
+        let (half_sine_over_angle, w) = half_angle(squared);
+        let short = Self {
             x: f32x8::ZERO,
             y: angles * half_sine_over_angle,
             z: f32x8::ZERO,
             w,
-        }
+        };
+        short.mend(squared.simd_le(f32x8::splat(PI * PI)), |lane| {
+            Quat::from_rotation_y(angles.as_array()[lane])
+        })
     }
 
     /// The same rotations where the mask is set, and others where it is not, which is seldom.
