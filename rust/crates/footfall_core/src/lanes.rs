@@ -77,8 +77,12 @@ mod tests {
     fn rotations_by_any_number_of_turns_are_rotations() {
         let angles = COUNTING * COUNTING * 500.0 - f32x8::splat(9.0);
         let [x, y] = [Quatx8::from_rotation_x, Quatx8::from_rotation_y].map(|all| all(angles));
-        assert!(agree(x, |lane| Quat::from_rotation_x(angles.as_array()[lane])));
-        assert!(agree(y, |lane| Quat::from_rotation_y(angles.as_array()[lane])));
+        assert!(agree(x, |lane| Quat::from_rotation_x(
+            angles.as_array()[lane]
+        )));
+        assert!(agree(y, |lane| Quat::from_rotation_y(
+            angles.as_array()[lane]
+        )));
     }
 
     #[test]

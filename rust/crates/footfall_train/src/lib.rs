@@ -33,6 +33,7 @@ pub mod standing;
 mod step_hsmm;
 pub mod train;
 pub mod training_comparison;
+mod trunk_pitch;
 pub mod walker_adaptive;
 
 pub use adapt::{AdaptConfig, AdaptMethod, Adapted, adapt_style, shows_steps};

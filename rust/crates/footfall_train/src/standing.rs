@@ -1,6 +1,7 @@
 //! Standing, from recordings of standing people.
 //!
-//! The [stretches] of every recording count in which a person stands upright on planted feet with hanging arms. Their mean is the posture.
+//! The [stretches] of every recording count in which a person stands upright on planted feet with hanging arms. Their mean is the posture, whose trunk is as upright as that of
+//! the walk: bones of trunks have no direction that all skeletons share, and people who are seen doing both are as upright standing as walking, to 2°.
 //! Motion about it is split into glances, which jump and hold (`looks`), and the rest, a Gaussian process of octaves (`octaves`).
 //! People who fidget and people who hardly move have equal weight.
 
@@ -8,11 +9,12 @@ mod looks;
 mod octaves;
 mod stretches;
 
+use crate::trunk_pitch::{NECK, PELVIS, average, difference, of_features, turn};
 use footfall_core::Clip;
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{Joint, Side};
 use footfall_model::layout::{feature_offset, mirror};
-use footfall_model::{Breath, FEATURE_COUNT, SWAY_COUNT, StandingModel};
+use footfall_model::{Breath, FEATURE_COUNT, GaitModel, SWAY_COUNT, StandingModel};
 use footfall_motion::retarget::Retargeted;
 use glam::{Quat, Vec3};
 pub use stretches::{Stretch, stretches};
@@ -87,13 +89,13 @@ impl StandingClip {
     }
 }
 
-/// Learns how people stand; `None` without standing.
-pub fn learn(clips: &[StandingClip]) -> Option<LearnedStanding> {
+/// Learns how people stand who walk like this on average; `None` without standing.
+pub fn learn(clips: &[StandingClip], walk: &GaitModel) -> Option<LearnedStanding> {
     let people = people(clips);
     if people.is_empty() {
         return None;
     }
-    let (posture, ahead) = posture(&people);
+    let (mut posture, ahead) = posture(&people);
     let mut offsets: Vec<Vec<Offsets>> = people
         .iter()
         .map(|person| {
@@ -103,6 +105,7 @@ pub fn learn(clips: &[StandingClip]) -> Option<LearnedStanding> {
                 .collect()
         })
         .collect();
+    stand_as_walking(&mut posture, walk);
     let looks = looks::take_out(&people, &mut offsets);
     let weights: Vec<f64> = people.iter().map(|person| person.weight).collect();
     let swayed = octaves::estimate(&offsets, &weights);
@@ -193,6 +196,14 @@ fn stand_flat(posture: &mut [f64], bent: f64, turned_out: f64) {
     }
 }
 
+/// Gives the trunk of a posture the mean pitch of a walk's. Pelvis and face keep their directions.
+fn stand_as_walking(posture: &mut [f64], walk: &GaitModel) {
+    let mut turns = difference(&average(walk), &of_features(posture));
+    turns[PELVIS] = 0.0;
+    turns[NECK..].fill(0.0);
+    turn(posture, &turns);
+}
+
 /// Raises the face of a posture to the horizon. Which way of a recording's head is ahead is a matter of its skeleton: people's means lie 10 to
 /// 20 degrees apart.
 fn level_gaze(posture: &mut [f64]) {
@@ -279,5 +290,27 @@ fn breath() -> Breath {
     Breath {
         rate_hz: BREATHS_PER_MINUTE / 60.0,
         direction,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::adapt::tests::base;
+
+    #[test]
+    fn people_stand_as_upright_as_they_walk_and_look_ahead() {
+        let walk = base();
+        let mut posture = vec![0.0; FEATURE_COUNT];
+        set(&mut posture, Joint::Spine, Quat::from_rotation_x(-0.3));
+        level_gaze(&mut posture);
+        let before = of_features(&posture);
+        stand_as_walking(&mut posture, &walk);
+        let [after, walking] = [of_features(&posture), average(&walk)];
+        for (index, after) in after.into_iter().enumerate() {
+            let is_trunk = index > PELVIS && index < NECK;
+            let expected = if is_trunk { walking } else { before }[index];
+            assert!((after - expected).abs() < 1e-4, "{after} {expected}");
+        }
     }
 }

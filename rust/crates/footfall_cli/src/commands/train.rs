@@ -157,7 +157,7 @@ pub(crate) fn run(args: &TrainArgs) -> Result<()> {
     let mut trained = train_average(&corpus.clips, &config(args), made_from, &mut progress)
         .with_context(|| args.corpus.index.display().to_string())?;
     let standing = match standing {
-        Some(standing) => Some(learn_standing(&standing, args)?),
+        Some(standing) => Some(learn_standing(&standing, &trained.model, args)?),
         None => None,
     };
     trained.model.standing = standing.as_ref().map(|learned| learned.model.clone());
@@ -197,13 +197,13 @@ fn running_of(
     })
 }
 
-fn learn_standing(corpus: &Corpus, args: &TrainArgs) -> Result<LearnedStanding> {
+fn learn_standing(corpus: &Corpus, walk: &GaitModel, args: &TrainArgs) -> Result<LearnedStanding> {
     let clips: Vec<StandingClip> = corpus
         .clips
         .iter()
         .map(|clip| StandingClip::new(clip.row.subject(), &clip.retargeted))
         .collect();
-    standing::learn(&clips).with_context(|| {
+    standing::learn(&clips, walk).with_context(|| {
         format!(
             "{}: the recordings of --standing have no several seconds of upright standing with hanging arms; widen it",
             args.corpus.index.display()

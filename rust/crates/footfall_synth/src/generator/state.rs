@@ -50,7 +50,7 @@ pub enum StateError {
     /// A number or a shape in it is invalid.
     #[error("the state was damaged; save it again")]
     Damaged,
-    /// Its numbers are each within their limits, but the step from them is not finite.
+    /// Its numbers are each within their limits, but no body can make the step from them.
     #[error("the state was damaged: its step leads nowhere; save it again")]
     Nowhere,
     /// The model generates no walk from it.

@@ -20,10 +20,24 @@ pub(crate) struct PlantedFrame {
     pub(crate) contact: [bool; 2],
 }
 
+/// Cosines of half of the angles by which a body and a joint may turn from frame to frame. Blends of headings are unit quaternions to a ten-thousandth up to there.
+const NEAR: f32 = 0.968;
+const JOINTS_NEAR: f32 = 0.64;
+
 impl PlantedFrame {
     /// Returns true when place and pose are finite.
     pub(crate) fn is_finite(&self) -> bool {
         self.ground_position.is_finite() && self.pose.is_finite()
+    }
+
+    /// Returns true when the body turns by less than 29° to the next frame, and no joint by more than 100°.
+    pub(crate) fn is_near(&self, next: &Self) -> bool {
+        let joints = self.pose.rotations.iter().zip(&next.pose.rotations);
+        self.level.dot(next.level) > NEAR
+            && self.plan_from_ground.dot(next.plan_from_ground) > NEAR
+            && joints
+                .into_iter()
+                .all(|(from, to)| from.dot(*to) > JOINTS_NEAR)
     }
 }
 

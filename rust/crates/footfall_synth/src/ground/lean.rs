@@ -44,8 +44,13 @@ const UNHURRIED_SECS: f32 = 0.4;
 /// Change of speed below which no trunk leans, m/s².
 const UNNOTICED_MPS2: f32 = 0.3;
 
-/// Largest lean into a turn, and of the trunk against a change of speed, radians.
+/// Largest lean into a turn, and against a change of speed, radians.
 const MOST_RAD: Vec2 = Vec2::new(0.33, 0.22);
+
+/// Largest lean of the trunk ahead of a gain of speed, radians; legs land as for the whole of it.
+///
+/// Walkers here gain speed twice as fast as people set out, whose trunks lean by 4 to 6° more than standing, those of runners by 10 to 14° (O3DE's actor, CMU).
+const MOST_AHEAD_RAD: f32 = 0.12;
 
 /// Greatest acceleration of a lean into a turn, rad/s²: the hips move aside over their feet.
 const TIPPING_RADPS2: f32 = 8.0;
@@ -104,20 +109,24 @@ pub(crate) struct Bend {
 
 impl Bend {
     pub(crate) fn new(begin: Lean, pull: &Pull, secs: f32) -> Self {
-        let mut end = against(pull.after);
+        let [mut within, mut end] = [pull.within, pull.after].map(against);
         let most = TIPPING_RADPS2 * secs * secs / 6.0;
         end.x = end.x.clamp(begin.angle.x - most, begin.angle.x + most);
         // Nobody bends to and fro in an instant.
         let unhurried = (secs / UNHURRIED_SECS).min(1.0);
+        let landing = if pull.rests[1] {
+            0.0
+        } else {
+            landing(end.y, unhurried)
+        };
+        for lean in [&mut within, &mut end] {
+            lean.y = lean.y.min(MOST_AHEAD_RAD);
+        }
         Self {
             begin,
             end,
-            middle: unhurried.powi(2) * against(pull.within) - Vec2::new(0.0, 0.5 * end.y),
-            landing: if pull.rests[1] {
-                0.0
-            } else {
-                landing(end.y, unhurried)
-            },
+            middle: unhurried.powi(2) * within - Vec2::new(0.0, 0.5 * end.y),
+            landing,
             secs,
             rests: pull.rests,
         }

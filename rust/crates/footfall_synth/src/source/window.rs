@@ -221,10 +221,11 @@ impl StepWindow {
         Ok(())
     }
 
-    /// Returns true when all frames of the current step are finite.
-    pub(crate) fn is_finite(&self) -> bool {
+    /// Returns true when all frames of the current step are finite, and none turns far from the one before: poses between them are blended as near ones.
+    pub(crate) fn is_sound(&self) -> bool {
         let frames = &self.planted.frames[..=self.plans[1].shape.ground_frames()];
         frames.iter().all(PlantedFrame::is_finite)
+            && frames.windows(2).all(|pair| pair[0].is_near(&pair[1]))
     }
 
     /// Returns the share of the current step that had passed when it was replanned.

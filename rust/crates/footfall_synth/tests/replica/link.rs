@@ -283,18 +283,21 @@ fn slide(then: &Frame, now: &Frame, side: Side) -> f32 {
     ways.fold(f32::INFINITY, f32::min)
 }
 
-/// The farthest that a foot slides that stood when the walk began here, from there to the end of the stance, metres. Of such a stance there may be no more than a
-/// few frames in which it rolls off: [`slip`] says little of them.
-pub(crate) fn slid_at_join(frames: &[Frame]) -> f32 {
+/// How far a foot slides, metres: from where the walk begins here, to the end of the stance in which it does; and in the whole stance after that in which it slides
+/// farthest. Of the first there may be no more than a few frames in which the foot rolls off: [`slip`] says little of them.
+pub(crate) fn slid_at_join(frames: &[Frame]) -> [f32; 2] {
     let begun = frames.iter().position(|frame| frame.anew).unwrap();
     let slides = Side::BOTH.map(|side| {
-        let pairs = frames[begun..].windows(2);
-        let stance = pairs.take_while(|pair| pair.iter().all(|f| f.contact[side.index()]));
-        stance
-            .map(|pair| slide(&pair[0], &pair[1], side))
-            .sum::<f32>()
+        let stands = |pair: &[Frame]| pair.iter().all(|frame| frame.contact[side.index()]);
+        let pairs: Vec<&[Frame]> = frames[begun..].windows(2).collect();
+        let stretches = pairs.chunk_by(|one, other| stands(one) == stands(other));
+        let mut slides = stretches.map(|stretch| {
+            let stance = stretch.iter().filter(|pair| stands(pair));
+            stance.map(|pair| slide(&pair[0], &pair[1], side)).sum()
+        });
+        [slides.next().unwrap(), slides.fold(0.0, f32::max)]
     });
-    slides[0].max(slides[1])
+    [0, 1].map(|when| slides[0][when].max(slides[1][when]))
 }
 
 /// The fastest that a foot moves in the mean of one stance, m/s: in every frame the slower of heel, ball and toe tip. Single frames say less where machines do not keep

@@ -21,8 +21,9 @@ const SAME_PLACE_M: f32 = 0.05;
 /// A foot that stands keeps within this, m/s.
 const MOST_SLIP_MPS: f32 = 0.005;
 
-/// The rest of a stance in whose middle the walk begins slides no farther than a whole one of half a second may, metres.
-const SLID_AT_JOIN_M: f32 = 0.5 * MOST_SLIP_MPS;
+/// The rest of a stance in whose middle the walk begins slides no farther than this, beside the whole ones that follow. Frames of this machine lie between the model's, so
+/// that a rolling foot seems to slide by up to 4 mm in each.
+const SLID_AT_JOIN: f32 = 1.4;
 
 /// So long after a join steps agree, seconds: the delay of the link and a step.
 const JOINED_SECS: f32 = 1.2;
@@ -127,7 +128,7 @@ fn steps_agree_with_a_player_who_never_keeps_still() {
 
 #[test]
 fn whoever_joins_late_makes_the_same_steps_within_a_second() {
-    for (seed, speed) in [(1, 1.3), (2, 1.3), (3, 3.3), (4, 3.3), (5, 0.8)] {
+    for (seed, speed) in (1..25).zip([1.3, 3.3, 0.8].into_iter().cycle()) {
         let mut link = Link::new(seed);
         link.joined = false;
         link.walk(&walking(speed), 60.0 + 0.1 * seed as f32);
@@ -136,10 +137,10 @@ fn whoever_joins_late_makes_the_same_steps_within_a_second() {
         link.walk(&walking(speed), 6.0);
         assert_same_steps(&link, joined_secs + JOINED_SECS, 6);
         assert_eq!(anew(&link), 1, "seed {seed}");
-        let slid = slid_at_join(&link.there.frames);
+        let [slid, whole] = slid_at_join(&link.there.frames);
         assert!(
-            slid < SLID_AT_JOIN_M,
-            "seed {seed}: a foot slides by {slid} m"
+            slid < SLID_AT_JOIN * whole,
+            "seed {seed}: a foot slides by {slid} m, and by {whole} m in whole stances"
         );
     }
 }

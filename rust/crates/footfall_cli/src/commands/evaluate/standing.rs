@@ -156,7 +156,7 @@ fn leave_one_out(
             .filter(|clip| clip.subject != person.name)
             .cloned()
             .collect();
-        let Some(learned) = learn(&rest) else {
+        let Some(learned) = learn(&rest, model) else {
             continue;
         };
         let without = Arc::new(GaitModel {

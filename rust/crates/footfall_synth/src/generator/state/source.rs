@@ -164,7 +164,7 @@ impl State {
                     .restore(&mut planner, blends, draws, origin, buffers)?;
             }
             // Numbers within their limits may still add up to a step that nobody takes.
-            if !steps.window.is_finite() {
+            if !steps.window.is_sound() {
                 let (origin, draws, blends) = unchanged;
                 let blends = blends.each_ref();
                 steps

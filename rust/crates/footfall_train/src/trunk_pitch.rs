@@ -1,0 +1,110 @@
+//! Pitch of pelvis, trunk and head: by which skeletons differ whose bones have other directions, and people who lean.
+
+use crate::level_heads::turn_feature;
+use footfall_core::rotation::from_heading;
+use footfall_core::{JOINT_COUNT, Joint, rotation};
+use footfall_model::{GaitModel, layout};
+use glam::{Quat, Vec3};
+
+/// Pelvis and trunk, and then the head, in the order of the chain.
+pub(crate) const CHAIN: [Joint; 6] = [
+    Joint::Hips,
+    Joint::Spine,
+    Joint::Chest,
+    Joint::UpperChest,
+    Joint::Neck,
+    Joint::Head,
+];
+
+/// Places of the pelvis and of the first joint of the head in the [`CHAIN`].
+pub(crate) const PELVIS: usize = 0;
+pub(crate) const NECK: usize = 4;
+
+/// Pitch of every joint of the [`CHAIN`], downwards, radians.
+pub(crate) type Pitches = [f32; CHAIN.len()];
+
+/// Returns the mean pitches of an average walk.
+pub(crate) fn average(walk: &GaitModel) -> Pitches {
+    of_features(&walk.mean_features())
+}
+
+/// Returns the pitches of a row of features.
+pub(crate) fn of_features(features: &[f64]) -> Pitches {
+    let features: Vec<f32> = features.iter().map(|value| *value as f32).collect();
+    let mut rotations = [Quat::IDENTITY; JOINT_COUNT];
+    layout::decode(&features, &mut rotations);
+    pitches(&rotations)
+}
+
+/// Returns the pitches of a pose.
+pub(crate) fn pitches(rotations: &[Quat; JOINT_COUNT]) -> Pitches {
+    let mut global = from_heading(-rotation::heading(rotations[Joint::Hips.index()]));
+    CHAIN.map(|joint| {
+        global *= rotations[joint.index()];
+        -(global * Vec3::Z).y.clamp(-1.0, 1.0).asin()
+    })
+}
+
+/// Turns each joint of the chain in features about its own X axis; all others keep their directions.
+pub(crate) fn turn(features: &mut [f64], turns: &Pitches) {
+    let turn_of = |joint: Joint| {
+        let index = CHAIN.iter().position(|own| *own == joint);
+        index.map_or(Quat::IDENTITY, |index| Quat::from_rotation_x(turns[index]))
+    };
+    for joint in Joint::ALL {
+        let parent = joint.parent().map_or(Quat::IDENTITY, turn_of);
+        turn_feature(features, joint, parent.inverse(), turn_of(joint));
+    }
+}
+
+/// Returns the mean of pitches.
+pub(crate) fn mean(all: impl Iterator<Item = Pitches>) -> Pitches {
+    let (mut total, mut count) = (Pitches::default(), 0.0_f32);
+    for own in all {
+        total = sum(&total, &own);
+        count += 1.0;
+    }
+    total.map(|total| total / count.max(1.0))
+}
+
+/// Returns the sums of pitches.
+pub(crate) fn sum(a: &Pitches, b: &Pitches) -> Pitches {
+    core::array::from_fn(|index| a[index] + b[index])
+}
+
+/// Returns the differences of pitches.
+pub(crate) fn difference(a: &Pitches, b: &Pitches) -> Pitches {
+    core::array::from_fn(|index| a[index] - b[index])
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+    use crate::adapt::tests::clips;
+    use footfall_core::{ModelPose, Pose, Skeleton};
+    use footfall_model::FEATURE_COUNT;
+
+    pub(crate) fn turned(pose: &Pose, turns: &Pitches) -> Pose {
+        let mut features = [0.0; FEATURE_COUNT];
+        layout::encode(pose, 0.0, None, &mut features);
+        turn(&mut features, turns);
+        let mut turned = pose.clone();
+        layout::decode(&features.map(|value| value as f32), &mut turned.rotations);
+        turned
+    }
+
+    const TURNS: Pitches = [-0.1, -0.2, -0.3, -0.4, 0.1, 0.2];
+
+    #[test]
+    fn legs_and_arms_keep_their_directions() {
+        let skeleton = Skeleton::standard();
+        for before in &clips("path=walker_1_*")[0].clip().poses {
+            let poses = [before.clone(), turned(before, &TURNS)];
+            let [before, after] = poses.map(|pose| ModelPose::of(&skeleton, &pose));
+            for joint in Joint::ALL {
+                let turned = before.rotation(joint).angle_between(after.rotation(joint));
+                assert_eq!(turned > 0.01, CHAIN.contains(&joint), "{joint:?} {turned}");
+            }
+        }
+    }
+}
