@@ -8,7 +8,7 @@ use footfall_recon::Prepared;
 use footfall_synth::{
     Controls, GaitChoice, GaitGenerator, GeneratorConfig, StyleSpace, WalkConfig, synthesize,
 };
-use footfall_train::imu::{ImuClip, ImuTrainConfig, train_imu_clips};
+use footfall_train::imu::{ImuClip, ImuTrainConfig, TrunkTurn, train_imu_clips};
 use glam::Vec3;
 use std::sync::{Arc, OnceLock};
 
@@ -97,6 +97,7 @@ pub fn sensor_model(walks: &[Clip], sites: &[Site]) -> Arc<Prepared> {
             clip,
             first_frame: 0,
             recordings: &[],
+            trunk: TrunkTurn::default(),
         })
         .collect();
     let config = ImuTrainConfig::new(sites);

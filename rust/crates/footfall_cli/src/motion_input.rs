@@ -1,6 +1,7 @@
 //! A motion file as every command needs it: read, placed on the canonical body, with its contacts.
 
 use crate::fit_facts::note_people;
+use crate::output;
 use anyhow::{Context as _, Result};
 use footfall_core::Clip;
 use footfall_motion::bvh::BvhFile;
@@ -10,6 +11,7 @@ use footfall_motion::retarget::{
     JointMap, RetargetOptions, Retargeted, SkeletonFit, parse_joint_map,
 };
 use footfall_motion::steps::Step;
+use footfall_train::imu::{BentTrunk, bent_trunks};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -60,6 +62,21 @@ impl SkeletonArgs {
         let corpus = Corpus::read_with(index, conditions, &self.options())?;
         note_people(&corpus.report.people);
         Ok(corpus)
+    }
+
+    /// Finds the people whose skeletons have a bent trunk that is to be set upright, and names them.
+    pub(crate) fn bent_trunks(self, recordings: &[Recording]) -> Vec<BentTrunk> {
+        if self.as_recorded {
+            return Vec::new();
+        }
+        let bent = bent_trunks(recordings);
+        for trunk in &bent {
+            output::note(&format!(
+                "trunk of {} set upright: the upper chest leans by {:.0}° as it walks",
+                trunk.subject, trunk.recorded_deg
+            ));
+        }
+        bent
     }
 
     /// The option as it was given, for the command that a model's file states.

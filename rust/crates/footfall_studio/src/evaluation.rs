@@ -9,6 +9,7 @@ use footfall_train::evaluate::evaluate_styles;
 use footfall_train::evaluate::imu::{ImuRequest, evaluate_sensors};
 use footfall_train::evaluate::style_report::StyleReport;
 use footfall_train::evaluate::training::{DEFAULT_RATE_HZ, evaluate_training};
+use footfall_train::imu::{bent_trunks, level_trunks};
 use footfall_train::{Progress, TrainError};
 use std::path::{Path, PathBuf};
 
@@ -93,7 +94,11 @@ pub(crate) fn evaluate(
         .collect::<Result<_, _>>()
         .map_err(said)?;
     begin(progress, "reading the recordings")?;
-    let corpus = Corpus::read(&request.index, &conditions).map_err(said)?;
+    let mut corpus = Corpus::read(&request.index, &conditions).map_err(said)?;
+    if request.kind == EvaluateKind::Imu {
+        let bent = bent_trunks(&corpus.clips);
+        level_trunks(&mut corpus.clips, &bent);
+    }
     begin(progress, "judging")?;
     let recordings = &corpus.clips;
     Ok(match request.kind {

@@ -1,16 +1,18 @@
 //! From recordings of bodies to a model of what a sensor on them means (Mousas 2017, sections 4 and 5).
 //!
-//! [`synchronise`] brings a real sensor's recording onto the time of a clip; [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] combines chains to a model, whole or by representative segments; [`evaluate`] measures how
+//! [`bent_trunks`] finds skeletons whose bodies lean back; [`synchronise`] brings a real sensor's recording onto the time of a clip; [`observe`] turns a clip into a chain of phases with what sensors measure in each frame; [`train_imu`] combines chains to a model, whole or by representative segments; [`evaluate`] measures how
 //! close the bodies come that a model makes.
 
 mod align;
 mod chain;
 pub mod evaluate;
+mod level_trunks;
 mod statistics;
 mod synchronise;
 mod templates;
 
 pub use chain::{Chain, ImuClip, observe};
+pub use level_trunks::{BentTrunk, TrunkTurn, bent_trunks, level_trunks};
 pub use synchronise::{Synchronised, synchronise};
 
 use crate::error::TrainError;

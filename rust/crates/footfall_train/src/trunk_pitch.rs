@@ -2,7 +2,7 @@
 
 use crate::level_heads::turn_feature;
 use footfall_core::rotation::from_heading;
-use footfall_core::{JOINT_COUNT, Joint, rotation};
+use footfall_core::{JOINT_COUNT, Joint, Pose, rotation};
 use footfall_model::{GaitModel, layout};
 use glam::{Quat, Vec3};
 
@@ -47,14 +47,28 @@ pub(crate) fn pitches(rotations: &[Quat; JOINT_COUNT]) -> Pitches {
 
 /// Turns each joint of the chain in features about its own X axis; all others keep their directions.
 pub(crate) fn turn(features: &mut [f64], turns: &Pitches) {
-    let turn_of = |joint: Joint| {
-        let index = CHAIN.iter().position(|own| *own == joint);
-        index.map_or(Quat::IDENTITY, |index| Quat::from_rotation_x(turns[index]))
-    };
     for joint in Joint::ALL {
-        let parent = joint.parent().map_or(Quat::IDENTITY, turn_of);
-        turn_feature(features, joint, parent.inverse(), turn_of(joint));
+        let parent = joint
+            .parent()
+            .map_or(Quat::IDENTITY, |of| turn_of(turns, of));
+        turn_feature(features, joint, parent.inverse(), turn_of(turns, joint));
     }
+}
+
+/// As [`turn`], of a pose whose pelvis keeps its direction.
+pub(crate) fn turn_pose(pose: &mut Pose, turns: &Pitches) {
+    for joint in Joint::ALL {
+        let parent = joint
+            .parent()
+            .map_or(Quat::IDENTITY, |of| turn_of(turns, of));
+        let rotation = &mut pose.rotations[joint.index()];
+        *rotation = (parent.inverse() * *rotation * turn_of(turns, joint)).normalize();
+    }
+}
+
+fn turn_of(turns: &Pitches, joint: Joint) -> Quat {
+    let index = CHAIN.iter().position(|own| *own == joint);
+    index.map_or(Quat::IDENTITY, |index| Quat::from_rotation_x(turns[index]))
 }
 
 /// Returns the mean of pitches.
@@ -81,7 +95,7 @@ pub(crate) fn difference(a: &Pitches, b: &Pitches) -> Pitches {
 pub(crate) mod tests {
     use super::*;
     use crate::adapt::tests::clips;
-    use footfall_core::{ModelPose, Pose, Skeleton};
+    use footfall_core::{ModelPose, Skeleton};
     use footfall_model::FEATURE_COUNT;
 
     pub(crate) fn turned(pose: &Pose, turns: &Pitches) -> Pose {

@@ -283,7 +283,7 @@ fn slide(then: &Frame, now: &Frame, side: Side) -> f32 {
     ways.fold(f32::INFINITY, f32::min)
 }
 
-/// How far a foot slides, metres: from where the walk begins here, to the end of the stance in which it does; and in the whole stance after that in which it slides
+/// Distance that a foot slides, metres: from where the walk begins here, to the end of the stance in which it does; and in the whole stance after that in which it slides
 /// farthest. Of the first there may be no more than a few frames in which the foot rolls off: [`slip`] says little of them.
 pub(crate) fn slid_at_join(frames: &[Frame]) -> [f32; 2] {
     let begun = frames.iter().position(|frame| frame.anew).unwrap();

@@ -1,6 +1,7 @@
 //! One recording: what sensors measure and what the body does, frame by frame, in phases.
 
 use super::ImuTrainConfig;
+use super::level_trunks::TrunkTurn;
 use core::ops::Range;
 use footfall_core::rotation::{from_heading, heading, wrap_angle};
 use footfall_core::{
@@ -30,6 +31,8 @@ pub struct ImuClip<'a> {
     pub first_frame: usize,
     /// Recordings of the sensors, `aligned` and on the clip's time, one for each site; virtual ones take their place when empty.
     pub recordings: &'a [ImuRecording],
+    /// Turn that sets the trunk upright in a model; frames are chosen and compared as recorded.
+    pub trunk: TrunkTurn,
 }
 
 impl<'a> ImuClip<'a> {
@@ -40,6 +43,7 @@ impl<'a> ImuClip<'a> {
             clip: recording.clip(),
             first_frame: recording.first_frame(),
             recordings: &[],
+            trunk: TrunkTurn::default(),
         }
     }
 }
@@ -70,6 +74,8 @@ pub struct Chain {
     pub sensor: Vec<f32>,
     /// [`BODY_COUNT`] numbers for each frame.
     pub body: Vec<f32>,
+    /// Turn that sets the trunk upright in a model.
+    pub trunk: TrunkTurn,
 }
 
 impl Chain {
@@ -107,7 +113,9 @@ impl Chain {
             });
             for frame in segment.first..segment.end {
                 model.sensor.extend_from_slice(self.sensor_row(frame));
+                let begin = model.body.len();
                 model.body.extend_from_slice(self.body_row(frame));
+                self.trunk.turn(&mut model.body[begin..]);
             }
         }
     }
@@ -165,6 +173,7 @@ fn observe_one(clip: &ImuClip<'_>, config: &ImuTrainConfig, mirrored: bool) -> O
         segments: segments_at(clip.clip, &contacts, &times),
         sensor: Vec::with_capacity(count * SENSOR_COUNT * sensors.len()),
         body: Vec::with_capacity(count * BODY_COUNT),
+        trunk: clip.trunk,
     };
     let mut body = BodyRows::new(clip.clip, &contacts, &config.sites);
     body.previous = clip.clip.pose_at(start_secs - 1.0 / config.frame_rate_hz);

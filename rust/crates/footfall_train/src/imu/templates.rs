@@ -280,6 +280,7 @@ fn samples(chain: &Chain, segment: &ChainSegment, deviations: &[f32]) -> Vec<f32
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::imu::level_trunks::TrunkTurn;
     use footfall_core::{Behaviour, PhaseStart, Side, Skeleton};
     use footfall_model::imu_model::{BODY_COUNT, SENSOR_COUNT};
 
@@ -302,6 +303,7 @@ mod tests {
             segments: Vec::new(),
             sensor: Vec::new(),
             body: Vec::new(),
+            trunk: TrunkTurn::default(),
         };
         for turned in steps {
             for start in [PhaseStart::Landing, PhaseStart::TakeOff] {

@@ -9,7 +9,7 @@ use footfall_model::{GaitModel, Provenance};
 use footfall_motion::virtual_imu::{VirtualImuConfig, simulate};
 use footfall_recon::{Prepared, ReconConfig, Reconstructor};
 use footfall_synth::{WalkConfig, synthesize};
-use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, observe, train_imu};
+use footfall_train::imu::{Chain, ImuClip, ImuTrainConfig, TrunkTurn, observe, train_imu};
 use serde::Serialize;
 use std::hint::black_box;
 use std::net::{Ipv4Addr, UdpSocket};
@@ -87,6 +87,7 @@ impl ReconstructorBench {
                     clip: &clip,
                     first_frame: 0,
                     recordings: &[],
+                    trunk: TrunkTurn::default(),
                 },
                 &config,
             ));

@@ -16,6 +16,7 @@ use footfall_train::evaluate::imu::{
     ImuModels, ImuReport, ImuRequest, PAPER_SENSORS, evaluate_sensors,
 };
 use footfall_train::imu::evaluate::Device;
+use footfall_train::imu::level_trunks;
 use footfall_train::read_model_file;
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -105,7 +106,9 @@ fn published_parts() -> impl TypedValueParser<Value = &'static [Published]> {
 fn evaluate(args: &ImuArgs) -> Result<ImuReport> {
     let request = args.request()?;
     request.check()?;
-    let corpus = args.fit.read_corpus(&args.corpus, &args.conditions)?;
+    let mut corpus = args.fit.read_corpus(&args.corpus, &args.conditions)?;
+    let bent = args.fit.bent_trunks(&corpus.clips);
+    level_trunks(&mut corpus.clips, &bent);
     let mut progress = TrainingProgress(output::Progress::new());
     let report = evaluate_sensors(&corpus.clips, &request, &mut progress)
         .with_context(|| args.corpus.display().to_string())?;
