@@ -9,7 +9,7 @@ mod looks;
 mod octaves;
 mod stretches;
 
-use crate::trunk_pitch::{NECK, PELVIS, average, difference, of_features, turn};
+use crate::trunk_pitch::{average, of_features, trunk_turns, turn};
 use footfall_core::Clip;
 use footfall_core::rotation::{exp_map, log_map};
 use footfall_core::{Joint, Side};
@@ -198,9 +198,7 @@ fn stand_flat(posture: &mut [f64], bent: f64, turned_out: f64) {
 
 /// Gives the trunk of a posture the mean pitch of a walk's. Pelvis and face keep their directions.
 fn stand_as_walking(posture: &mut [f64], walk: &GaitModel) {
-    let mut turns = difference(&average(walk), &of_features(posture));
-    turns[PELVIS] = 0.0;
-    turns[NECK..].fill(0.0);
+    let turns = trunk_turns(&of_features(posture), &average(walk));
     turn(posture, &turns);
 }
 
@@ -297,6 +295,7 @@ fn breath() -> Breath {
 mod tests {
     use super::*;
     use crate::adapt::tests::base;
+    use crate::trunk_pitch::{NECK, PELVIS};
 
     #[test]
     fn people_stand_as_upright_as_they_walk_and_look_ahead() {

@@ -2,8 +2,9 @@
 
 use crate::level_heads::turn_feature;
 use footfall_core::rotation::from_heading;
-use footfall_core::{JOINT_COUNT, Joint, Pose, rotation};
+use footfall_core::{Clip, JOINT_COUNT, Joint, Pose, rotation};
 use footfall_model::{GaitModel, layout};
+use footfall_motion::steps::Step;
 use glam::{Quat, Vec3};
 
 /// Pelvis and trunk, and then the head, in the order of the chain.
@@ -22,6 +23,33 @@ pub(crate) const NECK: usize = 4;
 
 /// Pitch of every joint of the [`CHAIN`], downwards, radians.
 pub(crate) type Pitches = [f32; CHAIN.len()];
+
+/// Sum of pitches over frames.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Sum {
+    pitches: Pitches,
+    frames: f32,
+    /// Steps with these frames.
+    pub(crate) steps: usize,
+}
+
+impl Sum {
+    /// Adds a step.
+    pub(crate) fn add(&mut self, clip: &Clip, step: &Step) {
+        for pose in &clip.poses[step.first..step.end] {
+            for (sum, own) in self.pitches.iter_mut().zip(pitches(&pose.rotations)) {
+                *sum += own;
+            }
+            self.frames += 1.0;
+        }
+        self.steps += 1;
+    }
+
+    /// Returns the mean.
+    pub(crate) fn mean(&self) -> Pitches {
+        self.pitches.map(|sum| sum / self.frames.max(1.0))
+    }
+}
 
 /// Returns the mean pitches of an average walk.
 pub(crate) fn average(walk: &GaitModel) -> Pitches {
@@ -43,6 +71,14 @@ pub(crate) fn pitches(rotations: &[Quat; JOINT_COUNT]) -> Pitches {
         global *= rotations[joint.index()];
         -(global * Vec3::Z).y.clamp(-1.0, 1.0).asin()
     })
+}
+
+/// Returns the turns that bring the trunk alone from pitches to others: pelvis and head keep their directions.
+pub(crate) fn trunk_turns(from: &Pitches, to: &Pitches) -> Pitches {
+    let mut turns = difference(to, from);
+    turns[PELVIS] = 0.0;
+    turns[NECK..].fill(0.0);
+    turns
 }
 
 /// Turns each joint of the chain in features about its own X axis; all others keep their directions.

@@ -32,12 +32,10 @@ impl PlantedFrame {
 
     /// Returns true when the body turns by less than 29° to the next frame, and no joint by more than 100°.
     pub(crate) fn is_near(&self, next: &Self) -> bool {
-        let joints = self.pose.rotations.iter().zip(&next.pose.rotations);
+        let mut joints = self.pose.rotations.iter().zip(&next.pose.rotations);
         self.level.dot(next.level) > NEAR
             && self.plan_from_ground.dot(next.plan_from_ground) > NEAR
-            && joints
-                .into_iter()
-                .all(|(from, to)| from.dot(*to) > JOINTS_NEAR)
+            && joints.all(|(from, to)| from.dot(*to) > JOINTS_NEAR)
     }
 }
 

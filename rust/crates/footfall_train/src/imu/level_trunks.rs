@@ -3,7 +3,7 @@
 //! A sensor on a leg says little of the trunk, so that a body stands and walks with the trunks of the recordings. O3DE's rotations are on a skeleton whose spine is bent:
 //! on the canonical body that actor walks with a chest tilted back by 22° and his neck 10 cm behind his hips, and so does whoever is reconstructed from his frames.
 
-use crate::trunk_pitch::{NECK, PELVIS, Pitches, difference, pitches, turn, turn_pose};
+use crate::trunk_pitch::{NECK, Pitches, Sum, trunk_turns, turn, turn_pose};
 use footfall_model::FEATURE_COUNT;
 use footfall_motion::recording::Recording;
 use std::collections::BTreeMap;
@@ -15,7 +15,7 @@ const USUAL_DEG: [f32; NECK - 1] = [3.0, 2.0, 0.0];
 const UNUSUAL_DEG: f32 = 12.0;
 
 /// Least time of walking that shows how somebody walks, seconds.
-const ENOUGH_SECS: f32 = 4.0;
+const ENOUGH_SECS: f64 = 4.0;
 
 /// Styles that show how upright a person is: acted walks stoop on purpose.
 const PLAIN: [&str; 3] = ["", "neutral", "normal"];
@@ -55,30 +55,24 @@ impl TrunkTurn {
 
 /// Finds the people whose plain walks show a bent trunk.
 pub fn bent_trunks(recordings: &[Recording]) -> Vec<BentTrunk> {
-    let mut walked: BTreeMap<&str, (Pitches, f32, f32)> = BTreeMap::new();
+    let mut walked: BTreeMap<&str, (Sum, f64)> = BTreeMap::new();
     for recording in recordings {
         if !PLAIN.contains(&recording.style()) {
             continue;
         }
-        let frame_secs = recording.clip().frame_rate_hz.recip() as f32;
+        let clip = recording.clip();
         let steps = recording.walks.iter().flat_map(|walk| &walk.steps);
-        let (sum, frames, secs) = walked.entry(recording.subject()).or_default();
+        let (sum, secs) = walked.entry(recording.subject()).or_default();
         for step in steps.filter(|step| step.take_off.is_none()) {
-            for pose in &recording.clip().poses[step.first..step.end] {
-                let own = pitches(&pose.rotations);
-                sum.iter_mut().zip(own).for_each(|(sum, own)| *sum += own);
-                *frames += 1.0;
-                *secs += frame_secs;
-            }
+            sum.add(clip, step);
+            *secs += (step.end - step.first) as f64 / clip.frame_rate_hz;
         }
     }
     let mut usual = Pitches::default();
     usual[1..NECK].copy_from_slice(&USUAL_DEG.map(f32::to_radians));
-    let bent = walked.into_iter().map(|(subject, (sum, frames, secs))| {
-        let mean = sum.map(|sum| sum / frames.max(1.0));
-        let mut turns = difference(&usual, &mean);
-        turns[PELVIS] = 0.0;
-        turns[NECK..].fill(0.0);
+    let bent = walked.into_iter().map(|(subject, (sum, secs))| {
+        let mean = sum.mean();
+        let turns = trunk_turns(&mean, &usual);
         let is_bent = secs >= ENOUGH_SECS && turns[NECK - 1].abs() > UNUSUAL_DEG.to_radians();
         is_bent.then(|| BentTrunk {
             subject: subject.to_owned(),

@@ -5,38 +5,13 @@
 //! what sets skeletons apart.
 
 use super::few::deviation;
-use crate::trunk_pitch::{NECK, Pitches, average, difference, mean, pitches, sum, turn};
+use crate::trunk_pitch::{NECK, Pitches, Sum, average, difference, mean, sum, turn};
 use footfall_model::{GaitModel, OBSERVATION_COUNT};
 use footfall_motion::recording::Recording;
-use footfall_motion::steps::Step;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Fewest walked steps that show how somebody walks.
 const ENOUGH_STEPS: usize = 10;
-
-/// Sum of pitches over frames.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sum {
-    pitches: Pitches,
-    frames: f32,
-    steps: usize,
-}
-
-impl Sum {
-    fn add(&mut self, clip: &footfall_core::Clip, step: &Step) {
-        for pose in &clip.poses[step.first..step.end] {
-            for (sum, own) in self.pitches.iter_mut().zip(pitches(&pose.rotations)) {
-                *sum += own;
-            }
-            self.frames += 1.0;
-        }
-        self.steps += 1;
-    }
-
-    fn mean(&self) -> Pitches {
-        self.pitches.map(|sum| sum / self.frames.max(1.0))
-    }
-}
 
 /// Turns of the trunks of people, by which their skeletons differ from the average walk's.
 #[derive(Debug)]
@@ -139,6 +114,7 @@ mod tests {
     use crate::adapt::tests::{base, clips};
     use crate::trunk_pitch::CHAIN;
     use crate::trunk_pitch::tests::turned;
+    use footfall_motion::steps::Step;
 
     /// Walks of one person, of which the last steps count as a run's.
     fn recordings(subject: &str) -> Vec<Recording> {
